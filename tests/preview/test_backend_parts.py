@@ -10,8 +10,8 @@ import pytest
 from aidl_lang import pipeline
 from aidl_lang.common.source import SourceFile
 from aidl_lang.tools.agents.workspace import RefusalError
-from aidl_lang.tools.ide.preview import preview, set_knob
-from aidl_lang.tools.ide.preview.elements import Slider, Way
+from aidl_lang.tools.ide.preview import preview
+from aidl_lang.tools.ide.preview.elements import Slider, Way, set_knob
 from aidl_lang.tools.ide.workspace import View, Workspace, applied, look, run
 from tests.amount import TRIES_ALL
 from tests.compiled import EXAMPLES

@@ -10,7 +10,7 @@ from lxml import etree
 from shapely.geometry import Polygon
 from svgelements import Path as SvgPath
 
-from aidl_lang.tools.ide.preview import LAYERS, elements_at, preview, svg_of
+from aidl_lang.tools.ide.preview import LAYERS, preview, svg_of
 from aidl_lang.tools.ide.preview.elements import elements
 from aidl_lang.tools.ide.workspace import View
 from tests.compiled import LIGHTER
@@ -58,14 +58,6 @@ def test_elements_are_written_where_they_say(example: View) -> None:
         head = re.match(r"(@\w+(\([^)]*\))?\s*)*(construction\s+)?(\w+\s+)?(\w+)", span.text)
         assert head is not None
         assert is_in_another or name == head[5] or "=" not in span.text.partition("(")[0], (path, span.text)
-
-
-def test_the_text_of_an_element_leads_to_it(example: View) -> None:
-    values = elements(example).values
-    for start in sorted({e.span.start for e in values if e.span is not None})[:12]:
-        here = [e.span for e in values if e.span is not None and e.span.start == start]
-        smallest = min(here, key=lambda span: span.end)
-        assert {values[k].span for k in elements_at(example, start)} == {smallest}
 
 
 def test_every_element_that_is_drawn_can_be_pointed_at(example: View) -> None:

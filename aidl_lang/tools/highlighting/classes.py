@@ -72,9 +72,8 @@ class Piece(NamedTuple):
 def classify(text: str) -> list[Piece]:
     """Returns the pieces of a text in order, without the blanks between them."""
     found = tokenize(SourceFile("", text))
-    pieces = list(_Reader(text, found.tokens).pieces())
-    pieces += [Piece(c.span.start, c.span.end, _comment_class(c.text)) for c in found.comments]
-    return sorted(pieces)
+    comments = (Piece(c.span.start, c.span.end, _comment_class(c.text)) for c in found.comments)
+    return sorted([*_Reader(text, found.tokens).pieces(), *comments])
 
 
 def _comment_class(text: str) -> str:
@@ -94,13 +93,6 @@ def fixed_classes() -> dict[str, str]:
 def called() -> dict[str, str]:
     """Returns callable names, with the class of the call."""
     return {name: _CALL_CLASSES[kind] for name, kind in vocabulary().named().items() if kind in _CALL_CLASSES}
-
-
-@cache
-def _plain_names() -> dict[str, str]:
-    words = vocabulary()
-    found = dict.fromkeys(words.everywhere, "name.everywhere")
-    return {**found, **dict.fromkeys(words.constants, "name.constant")}
 
 
 @record(frozen=False)
@@ -209,9 +201,12 @@ class _Reader:
             return "name.definition"
         if self._is_kind(place):
             return "kind"
-        if after == "." and word in vocabulary().modules:
+        words = vocabulary()
+        if after == "." and word in words.modules:
             return "name.module"
-        return _plain_names().get(word, "name")
+        if word in words.constants:
+            return "name.constant"
+        return "name.everywhere" if word in words.everywhere else "name"
 
     def _is_assigned(self, place: int) -> bool:
         """Tells whether `=` gives the name a value here: it begins a statement, outside constraints."""
@@ -224,7 +219,7 @@ class _Reader:
             return False
         known = kind_of(self.tokens[place].text) is not None
         if self._kind(place + 1) == "CALL":
-            return known and self._kind(self._closing(place + 1) + 1) in _BEHIND_STRUCTURE
+            return known and self._kind(self._closing[place + 1] + 1) in _BEHIND_STRUCTURE
         if self._kind(place + 1) != "NAME":
             return False
         after = self._kind(self._after_index(place + 2))
@@ -234,15 +229,12 @@ class _Reader:
 
     def _after_index(self, place: int) -> int:
         while self._kind(place) == "[":
-            place = self._closing(place) + 1
+            place = self._closing[place] + 1
         return place
 
-    def _closing(self, place: int) -> int:
-        """Returns the place that closes the bracket opened here, or cuts it off."""
-        return self._closings[place]
-
     @cached_property
-    def _closings(self) -> dict[int, int]:
+    def _closing(self) -> dict[int, int]:
+        """The places of brackets with those that close them, or cut them off."""
         found: dict[int, int] = {}
         opened: list[int] = []
         for place, token in enumerate(self.tokens):
@@ -261,7 +253,10 @@ class _Reader:
         self._track_header(place, token.kind)
         match token.kind:
             case "CALL":
-                self.stack.append(_Inside(self._role(place)))
+                before = self._kind(place - 1)
+                is_template = before == "NAME" and self._is_kind(place - 1)
+                is_head = before in ("fn", "shape", "constraint") or is_template
+                self.stack.append(_Inside("parameters" if is_head else "arguments"))
             case "(" | "[":
                 self.stack.append(_Inside("group"))
             case ")" | "]":
@@ -282,8 +277,6 @@ class _Reader:
                     self.stack.pop()
                 if len(self.stack) > 1:
                     self.stack.pop()
-            case _:
-                pass
 
     def _track_header(self, place: int, kind: str) -> None:
         inside = self.stack[-1]
@@ -304,12 +297,6 @@ class _Reader:
             self.opens = "constraints"
         elif kind == "then":
             self.opens = "block"  # `constrain if a then b else c` is one expression
-
-    def _role(self, place: int) -> str:
-        before = self._kind(place - 1)
-        if before in ("fn", "shape", "constraint") or (before == "NAME" and self._is_kind(place - 1)):
-            return "parameters"
-        return "arguments"
 
 
 _BLOCKS = ("block", "constraints")

@@ -1,4 +1,4 @@
-"""Code actions: offers to change a program, and the fixes that come with diagnostics."""
+"""Code actions: the fixes that come with diagnostics, and offers to change a program."""
 
 from __future__ import annotations
 
@@ -12,18 +12,17 @@ from textwrap import dedent, indent
 from aidl_lang import parser
 from aidl_lang.checking.calls import arguments
 from aidl_lang.checking.symbols import IDLE, UNKNOWNS, Symbol, SymbolKind
-from aidl_lang.checking.units import UNITS
 from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix
 from aidl_lang.common.names import fold
 from aidl_lang.common.prose import fixed
 from aidl_lang.common.records import record
 from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.export.job import ExportError
-from aidl_lang.geometry.curves import Vec, bounds, union_bounds
+from aidl_lang.geometry.curves import Vec
 from aidl_lang.geometry.solved import Box, Motion, SolvedGeometry, SolvedModel, SolvedStructure
 from aidl_lang.syntax import ast
-from aidl_lang.tools.ide.guesses import can_write_back, write_back
-from aidl_lang.tools.ide.references import CannotError, Mention, free_name, mentions
+from aidl_lang.tools.ide.guesses import can_write_back, factor, write_back
+from aidl_lang.tools.ide.references import CannotError, free_name, mentions
 from aidl_lang.tools.ide.site import around, structures_around
 from aidl_lang.tools.ide.workspace import (
     View,
@@ -37,12 +36,8 @@ from aidl_lang.tools.ide.workspace import (
 )
 from aidl_lang.tools.mending import mend
 
-# --- Code actions: fixes, and changes that keep the drawing.
-#
 # Each action is found cheaply and carried out when it is chosen; those that could go wrong try the changed
 # program first, and refuse if the result is not what the title promises.
-
-__all__ = ["Action", "actions"]
 
 
 def actions(view: View, start: int, end: int) -> list[Action]:
@@ -55,9 +50,6 @@ def actions(view: View, start: int, end: int) -> list[Action]:
         *extractions(view, start),
         *writings(view, start, end),
     ]
-
-
-# --- An offer to change a program.
 
 
 @record()
@@ -100,7 +92,8 @@ _CONFLICTS = frozenset({"E0601", "E0602", "E0603", "E0605"})
 
 def fixes(view: View, start: int, end: int) -> Iterator[Action]:
     """Yields fixes for diagnostics at a selection; for a conflict, those of each constraint in it."""
-    near = [d for d in view.diagnostics if _is_at(view, d, start, end)]
+    places = ((d, (d.span, *(label.span for label in d.secondary))) for d in view.diagnostics)
+    near = [d for d, spans in places if any(_is_here(view, span, start, end) for span in spans)]
     offered: list[Fix] = []
     for d in near:
         if d.fix is not None:
@@ -115,9 +108,8 @@ def fixes(view: View, start: int, end: int) -> Iterator[Action]:
         yield Action("Apply all fixes", "source.fixAll", partial(_everything, view))
 
 
-def _is_at(view: View, d: Diagnostic, start: int, end: int) -> bool:
-    spans = [span for span in (d.span, *(label.span for label in d.secondary)) if span is not None]
-    return any(s.source is view.source and s.start <= end and start <= s.end for s in spans)
+def _is_here(view: View, span: Span | None, start: int, end: int) -> bool:
+    return span is not None and span.source is view.source and span.start <= end and start <= span.end
 
 
 def _remedies(view: View, d: Diagnostic) -> Iterator[Fix]:
@@ -146,11 +138,9 @@ def _everything(view: View) -> Sequence[Edit]:
 def allowances(view: View, start: int, end: int) -> Iterator[Action]:
     """Yields, for each note and warning at a selection, the action that silences it where it is."""
     for d in view.diagnostics:
-        place = d.span
-        if d.is_error or d.code == IDLE or place is None or place.source is not view.source:
-            continue
-        if place.start <= end and start <= place.end:
-            yield Action(f"Allow {d.code} here", "quickfix", partial(_allowing, view, d.code, place), d)
+        is_note = not d.is_error and d.code != IDLE
+        if is_note and d.span is not None and _is_here(view, d.span, start, end):
+            yield Action(f"Allow {d.code} here", "quickfix", partial(_allowing, view, d.code, d.span), d)
 
 
 def _allowing(view: View, code: str, place: Span) -> Sequence[Edit]:
@@ -174,11 +164,10 @@ def _edit(node: ast.Allowing | ast.Structure | ast.Assign, code: str) -> Edit:
     source, start = node.span.source, node.span.start
     for attribute in ast.attributes(node):
         if fold(attribute.name.text) == ast.ALLOW and attribute.arguments:
-            end = attribute.arguments[-1].span.end
-            return Edit(Span(source, end, end), f', "{code}"')
-    before = source.text[source.text.rfind("\n", 0, start) + 1 : start]
+            return insert(source, attribute.arguments[-1].span.end, f', "{code}"')
+    before = source.text[line_start(source.text, start) : start]
     between = " " if before.strip() else f"\n{before}"
-    return Edit(Span(source, start, start), f'@allow("{code}"){between}')
+    return insert(source, start, f'@allow("{code}"){between}')
 
 
 # --- Writes solved values into the text: at the cursor or selection, and everywhere.
@@ -211,18 +200,18 @@ _SHORT = 2
 def namings(view: View, start: int, end: int) -> Iterator[Action]:
     """Yields the action for the number at a selection, if a `param` may replace it."""
     path = around(view.module, start)
-    last = path[-1]
-    number = last if isinstance(last, ast.Number) else None
-    if number is None or number.span.end < end or any(isinstance(node, ast.Param) for node in path):
+    number = path[-1]
+    if not isinstance(number, ast.Number) or any(isinstance(node, ast.Param) for node in path):
         return
-    name = free_name(view, _suggested(view, path))
-    title = f"Name this number as a param: `{name}`"
-    yield Action(title, "refactor.extract", partial(_named, view, path, number, name))
+    if end <= number.span.end:
+        name = free_name(view, _suggested(view, path))
+        title = f"Name this number as a param: `{name}`"
+        yield Action(title, "refactor.extract", partial(_named, view, path, number, name))
 
 
 def _named(view: View, path: Sequence[ast.Node], number: ast.Number, name: str) -> list[Edit]:
-    edits = [_declared(view, path, f"param {name} = {number.span.text}{_range(number)}")]
-    edits.append(Edit(number.span, name))
+    declared = _declared(view, path, f"param {name} = {number.span.text}{_range(number)}")
+    edits = [declared, Edit(number.span, name)]
     before, after = view.outcome, edited(view, edits)
     if before is not None and before.ok and not (after.outcome and after.outcome.ok):
         raise CannotError(f"as a param the number is exact, and then: {first_error(after)}")
@@ -233,10 +222,10 @@ def _range(number: ast.Number) -> str:
     """Returns the range from half to twice the number; none for 0."""
     if not number.value:
         return ""
-    low, high = (f"{number.value * factor:.3g}" for factor in (0.5, 2))
+    low, high = (f"{number.value * share:.3g}" for share in (0.5, 2))
     if number.value.is_integer() and number.unit is None:  # it may count something
         low = str(max(1, int(number.value) // 2))
-    unit = number.unit if number.unit and UNITS[number.unit][0] != 1.0 else ""
+    unit = number.unit if number.unit and factor(number.unit) != 1.0 else ""
     return f" in {low}{unit}..{high}{unit}" if "e" not in low + high else ""
 
 
@@ -257,16 +246,13 @@ def _declared(view: View, path: Sequence[ast.Node], line: str) -> Edit:
     here = next(node for node in inner if node in statements)
     above = [s for s in statements if isinstance(s, ast.Param) and s.span.end <= here.span.start]
     if above:
-        last = above[-1]
-        return insert(view.source, last.span.end, f"\n{indent_at(text, last.span.start)}{line}")
-    if isinstance(home, ast.Structure):
-        first = statements[0].span.start
-        between = text[home.body.span.start + 1 : first]
-        if "\n" in between:
-            indent = indent_at(text, first)
-            return insert(view.source, home.body.span.start + 1, f"\n{indent}{line}\n")
-        return insert(view.source, home.body.span.start + 1, f" {line};")
-    return insert(view.source, above_comments(text, here.span.start), f"{line}\n\n")
+        last = above[-1].span
+        return insert(view.source, last.end, f"\n{indent_at(text, last.start)}{line}")
+    if isinstance(home, ast.Module):
+        return insert(view.source, above_comments(text, here.span.start), f"{line}\n\n")
+    start, first = home.body.span.start + 1, statements[0].span.start
+    is_below = "\n" in text[start:first]
+    return insert(view.source, start, f"\n{indent_at(text, first)}{line}\n" if is_below else f" {line};")
 
 
 def _suggested(view: View, path: Sequence[ast.Node]) -> str:
@@ -288,8 +274,6 @@ def _suggested(view: View, path: Sequence[ast.Node]) -> str:
                 words = [name.text, "value"]
             case ast.Placement(rotated=rotated) if inner is rotated:
                 words = [*words[:1], "angle"]
-            case _:
-                pass
     return "_".join(words) if len(words) > 1 else "_".join([*words, "size"])
 
 
@@ -320,21 +304,14 @@ def extractions(view: View, offset: int) -> Iterator[Action]:
 
 
 def _extracted(view: View, node: ast.Structure, outermost: ast.Node, name: str) -> list[Edit]:
-    passed = _passed(view, node)
-    text = view.source.text
-    body = _dedented(view, node)
+    passed, text = _passed(view, node), view.source.text
     parameters = ", ".join(symbol.name for symbol in passed)
-    template = f"{node.kind_word.text} {name}({parameters}) {body}\n\n"
+    template = f"{node.kind_word.text} {name}({parameters}) {_dedented(view, node)}\n\n"
     arguments = ", ".join(f"{symbol.name}: {symbol.name}" for symbol in passed)
     target = text[node.name.span.start : node.indices[-1].span.end] + "]" if node.indices else node.name.text
     placement = f" {node.placement.span.text}" if node.placement is not None else ""
-    edits = [
-        insert(view.source, above_comments(text, outermost.span.start), template),
-        Edit(
-            Span(view.source, node.kind_word.span.start, node.span.end),
-            f"{target} = {name}({arguments}){placement}",
-        ),
-    ]
+    used = Edit(node.kind_word.span.to(node.span), f"{target} = {name}({arguments}){placement}")
+    edits = [insert(view.source, above_comments(text, outermost.span.start), template), used]
     after = edited(view, edits)
     if not drawn_alike(view, after):
         raise CannotError(f"`{node.name.text}` cannot be made a template as it is: {first_error(after)}")
@@ -343,9 +320,8 @@ def _extracted(view: View, node: ast.Structure, outermost: ast.Node, name: str) 
 
 def _dedented(view: View, node: ast.Structure) -> str:
     """Returns the body of a structure indented for the file's level."""
-    text = view.source.text
-    start = line_start(text, node.kind_word.span.start)
-    margin = text[start : node.kind_word.span.start]
+    start, text = node.kind_word.span.start, view.source.text
+    margin = text[line_start(text, start) : start]
     lines = node.body.span.text.split("\n")
     if len(lines) == 1 or margin.strip():
         return node.body.span.text
@@ -359,16 +335,13 @@ def _passed(view: View, node: ast.Structure) -> list[Symbol]:
     for mention in mentions(view):
         symbol = mention.symbol
         inside = node.body.span.start <= mention.span.start < node.body.span.end
-        if (
-            not inside
-            or not isinstance(mention.node, ast.Name | ast.Call)
-            or not _is_around(view, node, symbol)
-        ):
+        is_read = inside and isinstance(mention.node, ast.Name | ast.Call)
+        if not is_read or not _is_around(view, node, symbol):
             continue
-        if symbol.kind in _PASSED:
-            found[symbol] = None
-        else:
-            raise CannotError(_why_not(node, mention))
+        if symbol.kind not in _PASSED:
+            what = "belongs to what is around it" if symbol.kind in UNKNOWNS else "is defined around it"
+            raise CannotError(f"`{node.name.text}` uses `{symbol.name}`, which {what}")
+        found[symbol] = None
     return list(found)
 
 
@@ -377,11 +350,6 @@ def _is_around(view: View, node: ast.Structure, symbol: Symbol) -> bool:
     here = [d.span for d in symbol.declarations if d.span.source is view.source]
     outside = [s for s in here if not (node.span.start <= s.start < node.span.end)]
     return bool(outside) and symbol.owner is not None and not isinstance(symbol.owner, ast.Module)
-
-
-def _why_not(node: ast.Structure, mention: Mention) -> str:
-    what = "belongs to what is around it" if mention.symbol.kind in UNKNOWNS else "is defined around it"
-    return f"`{node.name.text}` uses `{mention.symbol.name}`, which {what}"
 
 
 # --- Adds a missing constraint: a statement that holds something movable where it is.
@@ -408,9 +376,9 @@ class _Thing:
 
 def missing_constraints(view: View, offset: int) -> Iterator[Action]:
     """Yields actions for the innermost structure around the cursor, if something in it can still move."""
-    if view.outcome is None or view.outcome.model is None or view.outcome.status != "solved":
+    if view.solved is None or not view.solved.holds:
         return
-    model = view.outcome.model
+    model = view.solved.model
     node = next((n for n in structures_around(view, offset) if n.parameters is None), None)
     found = [s for s in model.root.walk() if node is not None and s.span == node.span]
     if node is None or len(found) != 1:
@@ -427,10 +395,11 @@ def _added(view: View, node: ast.Structure, statement: str) -> list[Edit]:
     """Adds the statement to the structure's last `constrain { }`, or to a new one at its end."""
     edits = [_place(view, node, statement)]
     changed = edited(view, edits)
-    before, after = (each.model if (each := v.outcome) is not None else None for v in (view, changed))
-    if after is None or changed.outcome is None or not changed.outcome.ok:
+    before, after = view.solved, changed.solved
+    if after is None or not after.outcome.ok:
         raise CannotError(f"with `{statement}` the program does not solve: {first_error(changed)}")
-    if before is None or before.degrees is None or (after.degrees or 0) >= before.degrees:
+    free = before.model.degrees if before is not None else None
+    if free is None or (after.model.degrees or 0) >= free:
         raise CannotError(f"`{statement}` would hold nothing that is free")
     return edits
 
@@ -468,14 +437,10 @@ def _statements(model: SolvedModel, structure: SolvedStructure, motion: Motion) 
             side = "width" if motion.words == "grow wider" else "height"
             length = moved.box.width if side == "width" else moved.box.height
             yield f"{name}.{side} == {fixed(length, _DECIMALS)}"
-        case "change":
-            value = _number_of(structure, name)
-            if value is not None:
-                yield f"{name} == {fixed(value, _DECIMALS)}"
+        case "change" if (value := _number_of(structure, name)) is not None:
+            yield f"{name} == {fixed(value, _DECIMALS)}"
         case "turn" if (angle := _number_of(structure, f"{name}.angle")) is not None:
             yield f"{name}.angle == {fixed(angle, _DECIMALS)}deg"
-        case _:
-            pass
 
 
 def _held(
@@ -488,11 +453,12 @@ def _held(
 ) -> Iterator[str]:
     """Yields alignments that hold now, then the present coordinate."""
     moving = [thing.removeprefix(f"{structure.path}.") for thing in motion.things]
-    at = _middle(moved.box, axis)
+    at, whole = _middle(moved.box, axis), model.root.box
+    near = _ALIGNED * (math.hypot(whole.width, whole.height) if whole is not None else 1.0)
     place = f"{moved.name}.{axis}" if moved.is_point else f"{moved.name}.center.{axis}"
     for name, other in things.items():
         is_apart = not any(name == m or name.startswith(f"{m}.") or m.startswith(f"{name}.") for m in moving)
-        if is_apart and abs(_middle(other.box, axis) - at) <= _ALIGNED * _size(model):
+        if is_apart and abs(_middle(other.box, axis) - at) <= near:
             yield f"{place} == {name}.{axis}" if other.is_point else f"{place} == {name}.center.{axis}"
             break
     if (origin := _origin(model.root, structure.path)) is not None:
@@ -513,16 +479,13 @@ def _placed(geometry: SolvedGeometry, inside: str) -> Iterator[_Thing]:
     name = geometry.path.removeprefix(inside)
     if not _WRITABLE.fullmatch(name):
         return
-    curves = [bounds(piece) for piece in geometry.curves()]
-    if curves:
-        yield _Thing(name, Box(*union_bounds(curves)), is_point=False)
+    if (box := Box.around(geometry.curves(), ())) is not None:
+        yield _Thing(name, box, is_point=False)
     for field, value in geometry.values.items():
-        if isinstance(value, tuple) and len(value) == 2 and all(isinstance(v, float) for v in value):
-            x, y = value
-            assert isinstance(x, float)
-            assert isinstance(y, float)
-            point = name if field == "at" else f"{name}.{field}"
-            yield _Thing(point, Box(x, y, x, y), is_point=True)
+        match value:
+            case (float() as x, float() as y):
+                point = name if field == "at" else f"{name}.{field}"
+                yield _Thing(point, Box(x, y, x, y), is_point=True)
 
 
 def _origin(root: SolvedStructure, path: str) -> Vec | None:
@@ -546,8 +509,3 @@ def _number_of(structure: SolvedStructure, name: str) -> float | None:
 
 def _middle(box: Box, axis: str) -> float:
     return (box.left + box.right) / 2 if axis == "x" else (box.bottom + box.top) / 2
-
-
-def _size(model: SolvedModel) -> float:
-    box = model.root.box
-    return math.hypot(box.width, box.height) if box is not None else 1.0

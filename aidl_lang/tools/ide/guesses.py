@@ -66,10 +66,7 @@ def _numbers(value: object, at: Vec) -> Iterator[float]:
             for item in value:
                 yield from _numbers(item, at)
         case _ if is_dataclass(value):
-            for field in fields(value):
-                yield from _numbers(getattr(value, field.name), at)
-        case _:
-            pass
+            yield from _numbers([getattr(value, field.name) for field in fields(value)], at)
 
 
 # --- Numbers of the text that the solver may change, first guesses and kept sizes, with their solved values.
@@ -110,7 +107,7 @@ class Guess:
     @property
     def factor(self) -> float:
         """Millimetres or degrees in one of its unit."""
-        return _factor(self.unit)
+        return factor(self.unit)
 
     @property
     def behind(self) -> str:
@@ -133,27 +130,16 @@ class Guess:
 
 def guesses(view: View) -> list[Guess]:
     """Returns the first guesses and kept sizes of the text in order; none before it was solved."""
-    outcome = view.outcome
-    if outcome is None or outcome.built is None or outcome.evaluate is None or outcome.status != "solved":
+    solved = view.solved
+    if solved is None or not solved.holds:
         return []
     uses: dict[ast.Number | ast.Unary, list[Literal]] = {}
-    for literal in outcome.built.literals:
-        if literal.node.span.source is view.source and any(
-            not unknown.exact for unknown in ex.unknowns([literal.became])
-        ):
-            uses.setdefault(literal.node, []).append(literal)
+    for use in solved.built.literals:
+        if use.node.span.source is view.source and not all(u.exact for u in ex.unknowns([use.became])):
+            uses.setdefault(use.node, []).append(use)
     named = set(_read_more_than_once(view)) if uses else set()
-    found = (_guess(node, tuple(each), node in named, outcome.evaluate) for node, each in uses.items())
+    found = (_guess(node, tuple(each), node in named, solved.evaluate) for node, each in uses.items())
     return sorted(found, key=lambda guess: guess.span.start)
-
-
-def as_kept(view: View) -> Evaluator | None:
-    """Returns an evaluator at the solved positions with every kept size as written."""
-    outcome = view.outcome
-    if outcome is None or outcome.evaluate is None:
-        return None
-    values = outcome.evaluate.values
-    return Evaluator({u: u.guess if u.kept else value for u, value in values.items()})
 
 
 def _guess(node: ast.Number | ast.Unary, uses: tuple[Literal, ...], named: bool, evaluate: Value) -> Guess:
@@ -164,17 +150,18 @@ def _guess(node: ast.Number | ast.Unary, uses: tuple[Literal, ...], named: bool,
     return Guess(
         span=node.span,
         written=-number.value if is_negative else number.value,
-        solved=_agreed([evaluate(use.became) / _factor(unit) for use in uses]),
+        solved=_agreed([evaluate(use.became) / factor(unit) for use in uses]),
         unit=unit,
         measure=unit or _MEASURES.get(uses[0].dimension or PLAIN, ""),
         path=uses[0].path,
-        is_kept=all((isinstance(use.became.payload, Unknown) and use.became.payload.kept) for use in uses),
+        is_kept=all(isinstance(use.became.payload, Unknown) and use.became.payload.kept for use in uses),
         is_shared=named or len(uses) > 1,
         uses=uses,
     )
 
 
-def _factor(unit: str) -> float:
+def factor(unit: str | None) -> float:
+    """Returns the millimetres or degrees in one of a unit; 1 without one."""
     return UNITS[unit][0] if unit else 1.0
 
 
@@ -212,21 +199,11 @@ def _named(view: View, node: ast.Node) -> Iterator[tuple[tuple[ast.Identifier, .
             for parameter in parameters:
                 if parameter.default is not None:
                     yield (parameter.name,), parameter.default
-        case ast.Call():
-            yield from _given_to_function(view, node)
-        case _:
-            pass
-
-
-def _given_to_function(
-    view: View, call: ast.Call
-) -> Iterator[tuple[tuple[ast.Identifier, ...], ast.Expression]]:
-    """Yields the arguments of a `fn`: any of its parameters may be read more than once."""
-    signature = chosen(view, call)
-    if signature is not None and isinstance(signature.node, ast.FunctionDefinition):
-        names = tuple(parameter.name for parameter in signature.node.parameters)
-        for argument in call.arguments:
-            yield names, argument.value
+        case ast.Call() if (signature := chosen(view, node)) is not None:
+            if isinstance(signature.node, ast.FunctionDefinition):
+                names = tuple(parameter.name for parameter in signature.node.parameters)
+                for argument in node.arguments:
+                    yield names, argument.value  # any of its parameters may be read more than once
 
 
 # --- Writes solved values into the text in place of its first guesses, and of sizes that had to change.
@@ -261,49 +238,39 @@ def number_for(guess: Guess, value: float, precision: float = VISIBLE / 2) -> st
 
 
 def _targets(view: View, span: Span | None, sizes: bool) -> dict[Guess, float]:
-    outcome, kept = view.outcome, as_kept(view)
-    if outcome is None or outcome.evaluate is None or kept is None:
+    if view.solved is None:
         return {}
-    found: dict[Guess, float] = {}
-    for guess in guesses(view):
-        if span is not None and not (span.start <= guess.span.start and guess.span.end <= span.end):
-            continue
-        # With the sizes as written, or else they would be written by the way, as the end of a line is.
-        value = guess.valued(outcome.evaluate if sizes else kept)
-        if value is None or not guess.is_off(value):
-            continue
-        if not sizes and guess.is_kept:
-            continue
-        if sizes and not any(unknown.kept for unknown in guess.unknowns):
-            continue
-        found[guess] = value
-    return found
+    evaluate = view.solved.evaluate
+    if not sizes:  # at sizes as written, or else they would be written by the way, as the end of a line is
+        evaluate = Evaluator({u: u.guess if u.kept else value for u, value in evaluate.values.items()})
+    return {
+        guess: value
+        for guess in guesses(view)
+        if span is None or (span.start <= guess.span.start and guess.span.end <= span.end)
+        if (value := guess.valued(evaluate)) is not None and guess.is_off(value)
+        if (any(unknown.kept for unknown in guess.unknowns) if sizes else not guess.is_kept)
+    }
 
 
 def _tried(view: View, targets: Mapping[Guess, float]) -> tuple[Edit, ...] | None:
     """Returns the shortest numbers that draw the same.
 
     If the drawing is free to slide as a whole, it may: a position that the text does not say still begins
-    where it
-    did, and draws the rest along. The numbers follow until nothing moves any more.
+    where it did, and draws the rest along. The numbers follow until nothing moves any more.
     """
     assert view.outcome is not None
     order = {guess.span: index for index, guess in enumerate(guesses(view))}
     wanted, level = dict(targets), dict.fromkeys(targets, 0)
     for _ in range(_MOST_TRIES):
-        edits = tuple(
-            Edit(guess.span, number_for(guess, value, _PRECISIONS[level[guess]]))
-            for guess, value in wanted.items()
-        )
+        numbers = ((g, number_for(g, value, _PRECISIONS[level[g]])) for g, value in wanted.items())
+        edits = tuple(Edit(guess.span, number) for guess, number in numbers)
         again = edited(view, edits)
         assert again.outcome is not None
         is_slid = is_same(view.outcome, again.outcome, slid=True)
         moved = _moved(again, wanted, order)
         if is_slid and (not moved or is_same(view.outcome, again.outcome)):
-            is_worse = {d.code for d in again.outcome.diagnostics} - {
-                d.code for d in view.outcome.diagnostics
-            }
-            return None if is_worse else edits
+            before, after = ({d.code for d in each.diagnostics} for each in (view, again))
+            return edits if after <= before else None
         finest = 1 if is_slid else len(_PRECISIONS) - 1
         coarse = [guess for guess in moved or wanted if level[guess] < finest]
         if coarse:

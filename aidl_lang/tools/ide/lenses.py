@@ -6,19 +6,18 @@ from collections.abc import Callable, Iterator, Sequence
 from enum import StrEnum
 
 from aidl_lang.building.model import Knob
-from aidl_lang.checking.units import UNITS
 from aidl_lang.common.diagnostics import Edit
 from aidl_lang.common.names import fold
-from aidl_lang.common.prose import counted, first_few, fixed
+from aidl_lang.common.prose import counted, first_few, fixed, literal
 from aidl_lang.common.records import record
 from aidl_lang.common.source import Span
 from aidl_lang.geometry.solved import ConstraintReport, Motion, Scalar, SolvedModel, SolvedStructure
-from aidl_lang.pipeline import Compiled, Settings
+from aidl_lang.pipeline import Settings
 from aidl_lang.syntax import ast
 from aidl_lang.tools import ends
 from aidl_lang.tools.ends import Sweep, Turned, valued
-from aidl_lang.tools.ide.guesses import Guess, guesses, number_for
-from aidl_lang.tools.ide.workspace import View
+from aidl_lang.tools.ide.guesses import Guess, factor, guesses, number_for
+from aidl_lang.tools.ide.workspace import Solved, View
 from aidl_lang.tools.ranges import Ranges, Walk, ranges, sentence
 
 # --- Inlay hints: the solved values of first guesses, the chosen meaning of an ambiguous call, and values of
@@ -46,10 +45,10 @@ class Inlay:
 
 
 def inlays(view: View, span: Span | None = None) -> list[Inlay]:
-    """Returns the hints in a part of the text, or in all of it; none while another text is drawn."""
-    if view.outcome is None or view.outcome.model is None or view.is_stale:
+    """Returns the hints in a part of the text, or in all of it; none before it is drawn."""
+    if view.solved is None:
         return []
-    found = [*_solved(view), *_readings(view), *_set_from_outside(view)]
+    found = [*_solved(view), *_readings(view, view.solved.model), *_set_from_outside(view, view.solved)]
     wanted = (i for i in found if span is None or span.start <= i.offset <= span.end)
     return sorted(wanted, key=lambda inlay: inlay.offset)
 
@@ -70,31 +69,26 @@ def _told(guess: Guess) -> str:
     return f"`{guess.path}`{many}: {kind}, written as {written} and solved to {solved}{guess.behind}"
 
 
-def _readings(view: View) -> Iterator[Inlay]:
-    assert view.outcome is not None
-    assert view.outcome.model is not None
-    for reading in view.outcome.model.readings:
+def _readings(view: View, model: SolvedModel) -> Iterator[Inlay]:
+    for reading in model.readings:
         if reading.span.source is view.source:
-            about = (
-                f"`{reading.span.one_line}` has several meanings. By what is written it is {reading.text}."
-            )
+            said = f"`{reading.span.one_line}` has several meanings"
+            about = f"{said}. By what is written it is {reading.text}."
             yield Inlay(reading.span.end, reading.text, InlayKind.READING, about)
 
 
-def _set_from_outside(view: View) -> Iterator[Inlay]:
+def _set_from_outside(view: View, solved: Solved) -> Iterator[Inlay]:
     """Yields the `param` values given to a run, if they differ from the text."""
-    assert view.outcome is not None
-    given = {fold(name.strip()) for name in view.params or ()}
-    values = {node.span: node.value for node in ast.walk(view.module) if isinstance(node, ast.Param)}
-    for knob in view.outcome.knobs if given else ():
-        value = values.get(knob.span) if knob.span is not None else None
-        root = view.outcome.model.root.path if view.outcome.model is not None else ""
-        if value is None or given.isdisjoint({fold(knob.path), fold(f"{root}.{knob.path}")}):
+    given, root = view.set_outside, solved.model.root.path
+    for knob in solved.outcome.knobs if given else ():
+        declared = view.declaration(knob) if _is_own(view, knob) else None
+        if declared is None or given.isdisjoint({fold(knob.path), fold(f"{root}.{knob.path}")}):
             continue
-        if _as_written(value) != knob.value:
+        if _as_written(declared.value) != knob.value:
             unit = f" {knob.unit}" if knob.unit else ""
             text = f"{_ARROW} {_shown(knob.value)}{unit}"
-            yield Inlay(value.span.end, text, InlayKind.PARAM, f"`{knob.path}` is set from outside")
+            place = declared.value.span.end
+            yield Inlay(place, text, InlayKind.PARAM, f"`{knob.path}` is set from outside")
 
 
 def _as_written(node: ast.Expression) -> Scalar | None:
@@ -102,21 +96,15 @@ def _as_written(node: ast.Expression) -> Scalar | None:
         case ast.String(value=value) | ast.Boolean(value=value):
             return value
         case ast.Number(value=value, unit=unit):
-            return value * (UNITS[unit][0] if unit else 1.0)
+            return value * factor(unit)
         case ast.Unary(operator="-", operand=ast.Number(value=value, unit=unit)):
-            return -value * (UNITS[unit][0] if unit else 1.0)
+            return -value * factor(unit)
         case _:
             return None
 
 
 def _shown(value: Scalar) -> str:
-    match value:
-        case bool():
-            return str(value).lower()
-        case str():
-            return f'"{value}"'
-        case _:
-            return fixed(value, _DECIMALS)
+    return literal(value) if isinstance(value, bool | str) else fixed(value, _DECIMALS)
 
 
 # --- Lenses above params: the results of the program at the ends of their ranges and between, once tried.
@@ -132,26 +120,24 @@ class Found:
 
 def can_be_tried(view: View) -> bool:
     """True for a program that works as written, and has a param with a range."""
-    outcome = view.outcome
-    return outcome is not None and outcome.ok and any(ends.has_range(knob) for knob in outcome.knobs)
+    return view.outcome is not None and view.outcome.ok and any(map(ends.has_range, view.knobs))
 
 
 def tried(view: View, settings: Settings, progress: Callable[[int, int], None], seconds: float) -> Found:
     """Tries a program at the ends of its params, and walks between them, in half of the time each. Raises
     ValueError if it cannot be tried, and Cancelled if the request was given up.
     """
-    if view.outcome is None or not can_be_tried(view):
+    if not can_be_tried(view):
         raise ValueError("the program has to work as it is written, and have a param with a range")
     job = ends.SweepJob(view.source.name, view.source.text, view.world, settings)
-    sweep = ends.sweep(job, view.outcome.knobs, view.outcome.diagnostics, progress, seconds / 2)
+    sweep = ends.sweep(job, view.knobs, view.diagnostics, progress, seconds / 2)
     return Found(sweep, between(view, settings, progress, seconds / 2))
 
 
 def between(view: View, settings: Settings, progress: Callable[[int, int], None], seconds: float) -> Ranges:
     """Walks the params of a program that `can_be_tried`. Raises Cancelled as `tried` does."""
-    assert view.outcome is not None
     job = ends.SweepJob(view.source.name, view.source.text, view.world, settings)
-    return ranges(job, view.outcome.knobs, progress, seconds)
+    return ranges(job, view.knobs, progress, seconds)
 
 
 def end_lenses(view: View, found: Found | None) -> list[Lens]:
@@ -162,8 +148,7 @@ def end_lenses(view: View, found: Found | None) -> list[Lens]:
 
 
 def _offer(view: View) -> Iterator[Lens]:
-    assert view.outcome is not None
-    knobs = [k for k in view.outcome.knobs if ends.has_range(k)]
+    knobs = [k for k in view.knobs if ends.has_range(k)]
     own = [k for k in knobs if _is_own(view, k)]
     if own and own[0].span is not None:
         count = len({k.path for k in knobs})
@@ -194,10 +179,11 @@ def _title(turned: Sequence[Turned], walk: Walk | None, name: str) -> str:
     if said:
         return first_few(said, _NAMED, " · …", " · ")
     knob = turned[0].knob
-    if knob.low is None or knob.high is None or isinstance(knob.value, bool):
+    if knob.range is None or isinstance(knob.value, bool):
         return f"works with {' and '.join(valued(knob, each.value) for each in turned)}"
+    low, high = (valued(knob, end) for end in knob.range)
     throughout = ", one kind throughout" if walk is not None and walk.ok else ""
-    return f"works from {valued(knob, knob.low)} to {valued(knob, knob.high)}{throughout}"
+    return f"works from {low} to {high}{throughout}"
 
 
 # --- Lenses above structures: whether each solves, and its remaining motions.
@@ -217,14 +203,10 @@ class Lens:
 
 def lenses(view: View) -> list[Lens]:
     """Returns one lens for each structure of the solved text; none while it is being solved."""
-    outcome = view.outcome
-    if outcome is None or outcome.model is None:
+    solved = view.solved
+    if solved is None:
         return []
-    return list(_lenses(view, outcome, outcome.model))
-
-
-def _lenses(view: View, outcome: Compiled, model: SolvedModel) -> Iterator[Lens]:
-    made: dict[Span, list[SolvedStructure]] = {}
+    model, made, shown = solved.model, dict[Span, list[SolvedStructure]](), list[Lens]()
     for structure in model.root.walk():
         if structure.span is not None:
             made.setdefault(structure.span, []).append(structure)
@@ -234,20 +216,16 @@ def _lenses(view: View, outcome: Compiled, model: SolvedModel) -> Iterator[Lens]
             title = _title_of_structure(found, motions, model.constraints)
             if found[0] is model.root:
                 as_whole = "moves only as a whole" if model.degrees else _HELD
-                title = f"{_status(outcome, model)} · {title.replace(_HELD, as_whole)}"
-            yield Lens(node.name.span, title)
+                title = f"{_status(solved)} · {title.replace(_HELD, as_whole)}"
+            shown.append(Lens(node.name.span, title))
+    return shown
 
 
-def _status(outcome: Compiled, model: SolvedModel) -> str:
-    match outcome.status:
-        case "solved" if model.degrees is not None:
-            return f"solved, {counted(model.degrees, 'degree')} of freedom"
-        case "solved":
-            return "solved"
-        case "partial":
-            return "some constraints do not hold"
-        case _:
-            return "does not solve"
+def _status(solved: Solved) -> str:
+    degrees = solved.model.degrees
+    if solved.holds:
+        return "solved" if degrees is None else f"solved, {counted(degrees, 'degree')} of freedom"
+    return "some constraints do not hold" if solved.outcome.status == "partial" else "does not solve"
 
 
 def _title_of_structure(

@@ -59,11 +59,12 @@ def search(project: Project, query: str) -> list[SymbolMatch]:
         for each in _flat(view.path, outline(view), "")
         if is_spelled_in(query, each.entry.name)
     ]
-    return sorted(found, key=lambda each: _rank(fold(each.entry.name), wanted))[:MOST_FOUND]
 
+    def rank(each: SymbolMatch) -> tuple[bool, bool, bool, int]:
+        name = fold(each.entry.name)
+        return name != wanted, not name.startswith(wanted), wanted not in name, len(name)
 
-def _rank(name: str, wanted: str) -> tuple[bool, bool, bool, int]:
-    return name != wanted, not name.startswith(wanted), wanted not in name, len(name)
+    return sorted(found, key=rank)[:MOST_FOUND]
 
 
 def _flat(path: Path, entries: Iterable[Entry], container: str) -> Iterator[SymbolMatch]:
@@ -164,16 +165,13 @@ def _brackets(tokens: Iterable[Token]) -> Iterator[tuple[int, int]]:
             yield pair[1], token.start
 
 
-def _runs(lines: Iterable[tuple[int, int]]) -> Iterator[tuple[int, int]]:
-    start = end = -1
+def _runs(lines: Iterable[tuple[int, int]]) -> list[tuple[int, int]]:
+    found: list[tuple[int, int]] = []
     for first, last in lines:
-        if first > end + 1:
-            if start >= 0:
-                yield start, end
-            start = first
-        end = last
-    if start >= 0:
-        yield start, end
+        is_next = found and first <= found[-1][1] + 1
+        start = found.pop()[0] if is_next else first
+        found.append((start, last))
+    return found
 
 
 # --- Grows a selection from a word to the nodes around it.
@@ -215,23 +213,16 @@ TYPES = (
 MODIFIERS = ("declaration", "readonly", "defaultLibrary")
 
 _OF_KIND = {
-    SymbolKind.PARAM: "variable",
-    SymbolKind.LET: "variable",
-    SymbolKind.VAR: "variable",
-    SymbolKind.LOOP: "variable",
+    **dict.fromkeys(SymbolKind, "variable"),
+    **dict.fromkeys((SymbolKind.STRUCTURE, SymbolKind.TEMPLATE), "class"),
+    **dict.fromkeys((SymbolKind.FUNCTION, SymbolKind.CONSTRAINT, SymbolKind.ALIAS), "function"),
     SymbolKind.ARGUMENT: "parameter",
-    SymbolKind.GEOMETRY: "variable",
-    SymbolKind.STRUCTURE: "class",
-    SymbolKind.FUNCTION: "function",
     SymbolKind.SHAPE: "type",
-    SymbolKind.CONSTRAINT: "function",
-    SymbolKind.TEMPLATE: "class",
-    SymbolKind.ALIAS: "function",
     SymbolKind.NAMESPACE: "namespace",
-    SymbolKind.BUILTIN: "variable",
     SymbolKind.WORD: "enumMember",
     SymbolKind.FIELD: "property",
 }
+_OF_TOKEN = {"NUMBER": "number", "STRING": "string", "CALL": "function", "NAME": "variable"}
 _READONLY = frozenset({SymbolKind.PARAM, SymbolKind.LET, SymbolKind.LOOP, SymbolKind.ARGUMENT})
 _WORD_SIGNS = frozenset({"and", "or", "not"})
 
@@ -263,21 +254,11 @@ def semantic_tokens(view: View) -> list[Colored]:
 
 
 def _of_token(kind: str, text: str) -> str | None:
-    match kind:
-        case "NUMBER":
-            return "number"
-        case "STRING":
-            return "string"
-        case "CALL":
-            return "function"
-        case "NAME":
-            return "variable"
-        case _ if kind.isalpha() and kind == text:
-            return "operator" if kind in _WORD_SIGNS else "keyword"
-        case _ if kind == text and not set(kind) & set("{}()[],;:.@"):
-            return "operator"
-        case _:
-            return None
+    if kind in _OF_TOKEN or kind != text:
+        return _OF_TOKEN.get(kind)
+    if kind.isalpha():
+        return "operator" if kind in _WORD_SIGNS else "keyword"
+    return None if set(kind) & set("{}()[],;:.@") else "operator"
 
 
 def _heads(view: View) -> Iterator[Colored]:

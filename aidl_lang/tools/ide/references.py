@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
+from itertools import chain
 from pathlib import Path
 from typing import TypeAlias
 
@@ -19,6 +20,11 @@ from aidl_lang.syntax import ast
 from aidl_lang.syntax.tables import load_tables, tokenize
 from aidl_lang.tools.ide.site import around, scope_at
 from aidl_lang.tools.ide.workspace import Project, View, Workspace, applied, look
+
+
+class CannotError(Exception):
+    """Raised if a request cannot be carried out, with the reason for people."""
+
 
 Place: TypeAlias = tuple[Path, int]
 """The file and the offset of the first declaration of a symbol: the same in every view of a project."""
@@ -77,8 +83,6 @@ def _mentions_of(view: View, node: ast.Node) -> Iterator[Mention]:
             yield from _imported_names(view, node)
         case ast.Alias():
             yield from _alias_target(view, node)
-        case _:
-            pass
 
 
 def _as_written(view: View, call: ast.Call, symbol: Symbol) -> Symbol:
@@ -159,21 +163,16 @@ def _alias_target(view: View, node: ast.Alias) -> Iterator[Mention]:
         yield Mention(node.target.span, node, symbol or Symbol(found[0], SymbolKind.BUILTIN))
 
 
-# --- Reasons for which a request cannot be carried out.
-
-
-class CannotError(Exception):
-    """Raised if a request cannot be carried out, with the reason for people."""
-
-
-# --- Go to definition.
+# --- Where a name leads to, and that of a file.
 
 
 def definitions(view: View, offset: int) -> list[Span]:
     """Returns the declarations of the name at an offset, or the beginning of the file that is imported."""
     mention = mention_at(view, offset)
     if mention is not None:
-        return [_place(view, declaration.span) for declaration in mention.symbol.declarations]
+        spans = [declaration.span for declaration in mention.symbol.declarations]
+        drawings = view.resolution.drawings  # what is defined by one begins where it does: it has no text
+        return [Span(s.source, 0, 0) if s.source in drawings else s for s in spans]
     for node in around(view.module, offset):
         if isinstance(node, ast.Import) and node.path.span.start <= offset <= node.path.span.end:
             target = view.resolution.imports.get(node)
@@ -181,24 +180,12 @@ def definitions(view: View, offset: int) -> list[Span]:
     return []
 
 
-def _place(view: View, span: Span) -> Span:
-    """Returns the beginning of a drawing for what is defined by it: its text is none of AIDL."""
-    return Span(span.source, 0, 0) if span.source in view.resolution.drawings else span
-
-
-# --- Links to imported files.
-
-
 def links(view: View) -> list[tuple[Span, Path]]:
     """Returns the places of files' names, without quotes, with the files; none that cannot be read."""
-    found = []
-    for statement in view.module.statements:
-        target = view.resolution.imports.get(statement) if isinstance(statement, ast.Import) else None
-        if isinstance(statement, ast.Import) and target is not None:
-            path, span = view.file(target.source), statement.path.span
-            if path is not None:
-                found.append((view.span(span.start + 1, span.end - 1), path))
-    return found
+    imports = [s for s in view.module.statements if isinstance(s, ast.Import)]
+    targets = ((s.path.span, view.resolution.imports[s]) for s in imports if s in view.resolution.imports)
+    files = ((span, view.file(target.source)) for span, target in targets)
+    return [(view.span(span.start + 1, span.end - 1), file) for span, file in files if file is not None]
 
 
 # --- Finds every place that names a thing, in all programs of a project.
@@ -223,7 +210,9 @@ def references(project: Project, view: View, offset: int) -> list[Occurrence]:
     if place is None:  # built in: known by its name alone, in this file
         found = [m for m in mentions(view) if m.symbol.kind == symbol.kind and m.symbol.name == symbol.name]
         return _ordered(Occurrence(view.path, m.span, False) for m in found if not m.symbol.declarations)
-    return _ordered([*declarations(view, symbol), *_named(project, view, symbol, place)])
+    others = (other for other in project.views_with(symbol.name) if other.path != view.path)
+    named = (occurrence for each in chain([view], others) for occurrence in occurrences(each, place))
+    return _ordered([*declarations(view, symbol), *named])
 
 
 def highlights(view: View, offset: int) -> list[Occurrence]:
@@ -250,14 +239,7 @@ def declarations(view: View, symbol: Symbol) -> Iterator[Occurrence]:
             yield Occurrence(file, declaration.span, True)
 
 
-def _named(project: Project, view: View, symbol: Symbol, place: Place) -> Iterator[Occurrence]:
-    yield from occurrences(view, place)
-    for other in project.views_with(symbol.name):
-        if other.path != view.path:
-            yield from occurrences(other, place)
-
-
-def _ordered(found: Iterator[Occurrence] | list[Occurrence]) -> list[Occurrence]:
+def _ordered(found: Iterable[Occurrence]) -> list[Occurrence]:
     unique = {(o.path, o.span.start, o.span.end): o for o in found}
     return [unique[key] for key in sorted(unique)]
 
@@ -273,7 +255,11 @@ def renameable(view: View, offset: int) -> Span:
 def rename(project: Project, view: View, offset: int, name: str) -> dict[Path, tuple[Edit, ...]]:
     """Returns the edits by file that rename a thing. Raises CannotError if a meaning would change."""
     mention = _own(view, offset)
-    _require_name(name)
+    tokens = tokenize(SourceFile("name", name)).tokens
+    if len(tokens) != 2 or tokens[0].text != name or not name.isidentifier():
+        raise CannotError(f"`{name}` is no name: names are made of letters, digits and `_`")
+    if tokens[0].kind != "NAME" or name in load_tables().reserved:
+        raise CannotError(f"`{name}` is a word of the language")
     found = references(project, view, offset)
     by_file: dict[Path, list[Edit]] = defaultdict(list)
     for occurrence in found:
@@ -295,14 +281,6 @@ def _own(view: View, offset: int) -> Mention:
     if view.is_library(symbol.declarations[0].span.source):
         raise CannotError(f"`{symbol.name}` belongs to the standard library; `alias` gives it a second name")
     return mention
-
-
-def _require_name(name: str) -> None:
-    tokens = tokenize(SourceFile("name", name)).tokens
-    if len(tokens) != 2 or tokens[0].text != name or not name.isidentifier():
-        raise CannotError(f"`{name}` is no name: names are made of letters, digits and `_`")
-    if tokens[0].kind != "NAME" or name in load_tables().reserved:
-        raise CannotError(f"`{name}` is a word of the language")
 
 
 def _require_same_meaning(
@@ -335,13 +313,11 @@ def _require_same_meaning(
 
 def _difference(old: View, new: View, edits: Mapping[Path, tuple[Edit, ...]]) -> str | None:
     """Describes a name whose meaning changed."""
-    meant = _meanings(old)
-    means = _meanings(new)
     expected = {
-        _moved((old.path, start), edits)[1]: (_moved(place, edits) if place is not None else what)
-        for start, (place, what) in meant.items()
+        _moved((old.path, start), edits)[1]: _moved(what, edits) if isinstance(what, tuple) else what
+        for start, what in _meanings(old).items()
     }
-    found = {start: place if place is not None else what for start, (place, what) in means.items()}
+    found = _meanings(new)
     for start in sorted(expected.keys() | found.keys()):
         if expected.get(start) != found.get(start):
             line, _ = new.source.position(start)
@@ -351,14 +327,13 @@ def _difference(old: View, new: View, edits: Mapping[Path, tuple[Edit, ...]]) ->
     return None
 
 
-def _meanings(view: View) -> dict[int, tuple[Place | None, str]]:
+def _meanings(view: View) -> dict[int, Place | str]:
     """Returns, per offset of a name, the declaration of its meaning, or else its text."""
-    return {m.span.start: (place_of(view, m.symbol), m.symbol.name) for m in mentions(view)}
+    return {m.span.start: place_of(view, m.symbol) or m.symbol.name for m in mentions(view)}
 
 
 def _moved(place: Place, edits: Mapping[Path, tuple[Edit, ...]]) -> Place:
     path, offset = place
-    grown = sum(
-        len(e.replacement) - (e.span.end - e.span.start) for e in edits.get(path, ()) if e.span.end <= offset
-    )
+    before = [edit for edit in edits.get(path, ()) if edit.span.end <= offset]
+    grown = sum(len(edit.replacement) - (edit.span.end - edit.span.start) for edit in before)
     return path, offset + grown

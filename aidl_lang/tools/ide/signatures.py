@@ -13,9 +13,8 @@ from aidl_lang.common.names import fold
 from aidl_lang.common.records import record
 from aidl_lang.parser import standing_before
 from aidl_lang.syntax import ast
-from aidl_lang.syntax.automaton import Automaton
 from aidl_lang.syntax.tables import Token
-from aidl_lang.tools.ide.site import Where, around, scope_at, site_at, spot_at
+from aidl_lang.tools.ide.site import Where, around, innermost_brackets, scope_at, site_at, spot_at
 from aidl_lang.tools.ide.workspace import View
 from aidl_lang.tools.reference.collect import Doc, Entry, doc, reference
 from aidl_lang.tools.reference.pages import facts, forms
@@ -162,11 +161,8 @@ def _items(signature: Signature) -> list[str]:
 def of_parameter(signature: Signature, name: str) -> str:
     """Returns the sentences of a definition's comment that name the parameter."""
     about = doc_of(signature)
-    said = [
-        sentence
-        for sentence in _SENTENCE_END.split(f"{about.line}\n\n{about.text}")
-        if re.search(rf"`{re.escape(name)}\b", sentence)
-    ]
+    sentences = _SENTENCE_END.split(f"{about.line}\n\n{about.text}")
+    said = [sentence for sentence in sentences if re.search(rf"`{re.escape(name)}\b", sentence)]
     clauses = [" ".join(_clause(sentence, name).split()) for sentence in said]
     return " ".join(clause for clause in clauses if clause.count(" ") >= _FEWEST_WORDS)
 
@@ -202,8 +198,13 @@ class Reading:
         """True if no argument so far contradicts it."""
         return self.cost < _WRONG
 
-    def type_of(self, parameter: str) -> Type | None:
-        return next((kind for name, kind, _ in self.signature.parameters if name == parameter), None)
+    def filled_by(self, argument: int) -> str | None:
+        """Returns the parameter that an argument fills; None for one that is not there, or fills none."""
+        return self.taken[argument] if argument < len(self.taken) else None
+
+
+def type_of(signature: Signature, parameter: str | None) -> Type | None:
+    return next((kind for name, kind, _ in signature.parameters if name == parameter), None)
 
 
 def readings(program: Program, scope: SymbolScope, call: ast.Call) -> list[Reading]:
@@ -227,13 +228,12 @@ def _read(signature: Signature, words: Sequence[str | None], kinds: Sequence[Typ
     taken: list[str | None] = []
     cost = 0
     for word, kind in zip(words, kinds, strict=True):
-        name = (
-            next(positional, None) if word is None else meant(signature, word, {*named, *filter(None, taken)})
-        )
+        known = {*named, *filter(None, taken)}
+        name = next(positional, None) if word is None else meant(signature, word, known)
         taken.append(name)
         if name is None and word is not None and (signature.takes_any or fold(word) in PAIRS):
             continue
-        wanted = next((k for n, k, _ in signature.parameters if n == name), None)
+        wanted = type_of(signature, name)
         gathered = word is None and _gathers(signature, words, kinds)
         distance = _GATHERED if gathered else accepts(wanted, kind) if wanted is not None else None
         cost += _WRONG if distance is None else distance
@@ -278,7 +278,6 @@ def _gathers(signature: Signature, words: Sequence[str | None], kinds: Sequence[
 class ParameterHelp:
     """`place` is its range in the label of its overload, in code points; `about` is Markdown."""
 
-    name: str
     place: tuple[int, int]
     about: str
 
@@ -291,7 +290,6 @@ class OverloadHelp:
     about: str
     parameters: tuple[ParameterHelp, ...]
     active: int | None
-    fits: bool
 
 
 @record()
@@ -308,7 +306,8 @@ def signature_help(view: View, offset: int) -> SignatureHelp | None:
     if spot.where is Where.COMMENT:
         return None
     offset = spot.offset  # within the text
-    opening = _open_call(standing_before(view.source, offset))
+    brackets = innermost_brackets(standing_before(view.source, offset))
+    opening = next((token for token in brackets if token.kind == "CALL"), None)
     if opening is None:
         return None
     found = _argument_at(view, opening, offset)
@@ -329,15 +328,6 @@ def signature_help(view: View, offset: int) -> SignatureHelp | None:
     listed = sorted(ordered, key=_place)
     overloads = tuple(_told(reading, argument) for reading in listed)
     return SignatureHelp(overloads, listed.index(best))
-
-
-def _open_call(automaton: Automaton) -> Token | None:
-    for token in reversed(automaton.open_brackets()):
-        if token.kind == "{":
-            return None
-        if token.kind == "CALL":
-            return token
-    return None
 
 
 def _argument_at(view: View, opening: Token, offset: int) -> tuple[ast.Call, int] | None:
@@ -365,7 +355,7 @@ def _parameter(reading: Reading, argument: int) -> int | None:
     names = [name for name, _, _ in reading.signature.parameters]
     if argument >= len(reading.taken):
         return next((n for n, name in enumerate(names) if name not in reading.taken), None)
-    taken = reading.taken[argument]
+    taken = reading.filled_by(argument)
     return names.index(taken) if taken in names else None
 
 
@@ -373,8 +363,8 @@ def _told(reading: Reading, argument: int) -> OverloadHelp:
     signature = reading.signature
     label = label_of(signature)
     parameters = tuple(
-        ParameterHelp(name, place, of_parameter(signature, name))
+        ParameterHelp(place, of_parameter(signature, name))
         for (name, _, _), place in zip(signature.parameters, label.parameters, strict=True)
     )
     about = of_doc(doc_of(signature))
-    return OverloadHelp(label.text, about, parameters, _parameter(reading, argument), reading.fits)
+    return OverloadHelp(label.text, about, parameters, _parameter(reading, argument))

@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
+from dataclasses import replace
 from enum import Enum
 from functools import cached_property
+from itertools import takewhile
 
 from aidl_lang.checking.symbols import SymbolScope
 from aidl_lang.common.records import record
-from aidl_lang.common.source import SourceFile, Span
+from aidl_lang.common.source import SourceFile
 from aidl_lang.parser import Parsed, parse, standing_before
 from aidl_lang.syntax import ast
 from aidl_lang.syntax.automaton import Automaton
 from aidl_lang.syntax.tables import END, UNKNOWN, Token, Tokens
-from aidl_lang.tools.ide.workspace import View, look_at
+from aidl_lang.tools.ide.workspace import View, look
 
 # --- Finds the nodes and the token at an offset.
 
@@ -22,20 +24,10 @@ from aidl_lang.tools.ide.workspace import View, look_at
 def around(module: ast.Module, offset: int) -> list[ast.Node]:
     """Returns the nodes that an offset lies in or at the end of, the file first, the innermost last."""
     path: list[ast.Node] = [module]
-    while (inner := _child_at(path[-1], offset)) is not None:
-        path.append(inner)
+    while found := [c for c in ast.children(path[-1]) if c.span.start <= offset <= c.span.end]:
+        # of two that touch there, the one that begins
+        path.append(next((c for c in found if offset < c.span.end), found[-1]))
     return path
-
-
-def _child_at(node: ast.Node, offset: int) -> ast.Node | None:
-    """Returns the child that an offset lies in; of two that touch there, the one that begins."""
-    touching = None
-    for child in ast.children(node):
-        if child.span.start <= offset < child.span.end:
-            return child
-        if offset == child.span.end:
-            touching = child
-    return touching
 
 
 def scope_at(view: View, offset: int) -> SymbolScope:
@@ -56,13 +48,8 @@ def _opens_here(node: ast.Node, offset: int) -> bool:
 
 def token_at(view: View, offset: int) -> Token | None:
     """Returns the token that an offset lies in, or else the one that ends there."""
-    touching = None
-    for token in view.tokens.tokens:
-        if token.start <= offset < token.end:
-            return token
-        if token.end == offset:
-            touching = token
-    return touching
+    found = [token for token in view.tokens.tokens if token.start <= offset <= token.end]
+    return next((token for token in found if offset < token.end), found[-1] if found else None)
 
 
 def structures_around(view: View, offset: int) -> Iterator[ast.Structure]:
@@ -137,9 +124,8 @@ def _in_comment(tokens: Tokens, text: str, offset: int) -> bool:
 def _word_end(token: Token) -> int:
     if token.kind == "CALL":
         return token.start + len(token.text.rstrip("( \t"))
-    return (
-        token.end if token.kind == "NAME" or (token.kind.isidentifier() and token.text == token.kind) else -1
-    )
+    is_keyword = token.kind.isidentifier() and token.text == token.kind
+    return token.end if token.kind == "NAME" or is_keyword else -1
 
 
 def _literal(token: Token, before: Token | None, text: str, offset: int) -> Spot | None:
@@ -186,15 +172,6 @@ class EditSite:
         return self.path[-1] if self.path else None
 
     @property
-    def replaced(self) -> Span:
-        return self.original.span(self.spot.start, self.spot.end)
-
-    @property
-    def prefix(self) -> str:
-        """The written part of the word."""
-        return self.original.source.text[self.spot.start : self.spot.offset]
-
-    @property
     def following(self) -> str:
         """The text after the word."""
         return self.original.source.text[self.spot.end :]
@@ -229,16 +206,12 @@ class EditSite:
 
 
 def site_at(view: View, spot: Spot) -> EditSite:
-    automaton = standing_before(view.source, spot.start)
-    site = EditSite(view, spot, automaton, None, ())
-    if not (automaton.accepts(["NAME"]) or automaton.accepts(["CALL"]) or site.may_end):
+    site = EditSite(view, spot, standing_before(view.source, spot.start), None, ())
+    takes_name = site.takes("NAME") or site.takes("CALL") or site.may_end
+    if not takes_name or (best := _filled(site)) is None:
         return site
-    best = _filled(site)
-    if best is None:
-        return site
-    filled = look_at(view.path, best, view.world)
-    path = around(filled.module, spot.start + 1)
-    return EditSite(view, spot, automaton, filled, tuple(path))
+    filled = look(view.path, best, view.world)
+    return replace(site, view=filled, path=tuple(around(filled.module, spot.start + 1)))
 
 
 def _filled(site: EditSite) -> Parsed | None:
@@ -248,7 +221,8 @@ def _filled(site: EditSite) -> Parsed | None:
     best: tuple[int, Parsed] | None = None
     for ending in _endings(site):
         parsed = parse(SourceFile(site.original.path.name, head + PLACEHOLDER + ending + tail))
-        if not _has_placeholder(parsed.module, spot.start):
+        node = around(parsed.module, spot.start + 1)[-1]
+        if not (isinstance(node, ast.Name | ast.Identifier) and node.text == PLACEHOLDER):
             continue
         mistakes = sum(d.is_error for d in parsed.diagnostics)
         if best is None or mistakes < best[0]:
@@ -269,22 +243,12 @@ def _endings(site: EditSite) -> Iterator[str]:
         as_name, as_statement = [space, "," + space], ["()" + space, "(); "]
         plain = [*as_statement, *as_name] if site.begins_statement and is_last else [*as_name, *as_statement]
     yield from plain
-    closing = closers(site.automaton.open_brackets())
+    closing = "".join(_CLOSERS[token.kind] for token in innermost_brackets(site.automaton))
     if closing:
         yield from (closing, closing + ";", "()" + closing, "()" + closing + ";")
     yield closing + " {}"
 
 
-def closers(opened: Sequence[Token]) -> str:
-    """Returns the closing brackets for those opened in the innermost block."""
-    found = ""
-    for token in reversed(opened):
-        if token.kind == "{":
-            break
-        found += _CLOSERS[token.kind]
-    return found
-
-
-def _has_placeholder(module: ast.Module, start: int) -> bool:
-    node = around(module, start + 1)[-1]
-    return isinstance(node, ast.Name | ast.Identifier) and node.text == PLACEHOLDER
+def innermost_brackets(automaton: Automaton) -> Iterator[Token]:
+    """Yields the brackets that are open in the innermost block, the last first."""
+    return takewhile(lambda token: token.kind != "{", reversed(automaton.open_brackets()))

@@ -14,7 +14,9 @@ from pathlib import Path
 from typing import TypeAlias
 
 from aidl_lang import pipeline
-from aidl_lang.checking.imports import SUFFIX, ImportedDrawing, digest
+from aidl_lang.building.expression import Evaluator
+from aidl_lang.building.model import Knob, Model
+from aidl_lang.checking.imports import SUFFIX, digest
 from aidl_lang.checking.symbols import Resolution, audible
 from aidl_lang.common import resources
 from aidl_lang.common.diagnostics import Diagnostic, Edit
@@ -22,6 +24,8 @@ from aidl_lang.common.names import fold
 from aidl_lang.common.records import record
 from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.common.world import DiskWorld, FileError, ReadFailure, World, normalize
+from aidl_lang.geometry.drawing import Drawing
+from aidl_lang.geometry.solved import SolvedModel
 from aidl_lang.parser import Parsed
 from aidl_lang.pipeline import Compiled, Settings
 from aidl_lang.solver.hierarchy import Memory
@@ -111,9 +115,7 @@ def applied(text: str, edits: Iterable[Edit]) -> str:
 def between(source: SourceFile, text: str) -> list[Edit]:
     """Returns the edits, by whole lines, from one text to another."""
     old, new = source.text.splitlines(keepends=True), text.splitlines(keepends=True)
-    starts = [0]
-    for line in old:
-        starts.append(starts[-1] + len(line))
+    starts = list(accumulate(map(len, old), initial=0))
     changes = SequenceMatcher(a=old, b=new, autojunk=False).get_opcodes()
     return [
         Edit(Span(source, starts[i], starts[j]), "".join(new[k:m]))
@@ -169,6 +171,30 @@ SETTINGS = Settings()
 
 
 @record(eq=False)
+class Solved:
+    """An outcome that has a picture, with all that this was made of."""
+
+    outcome: Compiled
+    model: SolvedModel
+    drawing: Drawing
+    built: Model
+    evaluate: Evaluator
+
+    @property
+    def holds(self) -> bool:
+        return self.outcome.status == "solved"
+
+
+def solved(outcome: Compiled | None) -> Solved | None:
+    """Returns an outcome with what it is made of; None if it was wrong before it was solved."""
+    if outcome is None or outcome.model is None or outcome.drawing is None:
+        return None
+    if outcome.built is None or outcome.evaluate is None:
+        return None
+    return Solved(outcome, outcome.model, outcome.drawing, outcome.built, outcome.evaluate)
+
+
+@record(eq=False)
 class View:
     """A text of a program, checked and perhaps run.
 
@@ -181,7 +207,6 @@ class View:
     """
 
     path: Path
-    source: SourceFile
     world: World
     program: Program
     found: list[Diagnostic]
@@ -192,6 +217,10 @@ class View:
     @property
     def module(self) -> ast.Module:
         return self.program.main
+
+    @property
+    def source(self) -> SourceFile:
+        return self.program.main.source
 
     @property
     def resolution(self) -> Resolution:
@@ -205,36 +234,45 @@ class View:
         return audible(self.found, self.program.resolution.allowances)
 
     @property
+    def solved(self) -> Solved | None:
+        """What the outcome of this very text was made of; None without a picture."""
+        return solved(self.outcome)
+
+    @property
+    def knobs(self) -> tuple[Knob, ...]:
+        """The params as the outcome has them."""
+        return self.outcome.knobs if self.outcome is not None else ()
+
+    @property
+    def set_outside(self) -> frozenset[str]:
+        """The names, folded, of the params that were set from outside."""
+        return frozenset(fold(name.strip()) for name in self.params or ())
+
+    @property
     def is_stale(self) -> bool:
         """True if the picture is that of another text."""
         return self.drawn is not self.outcome
 
-    @cached_property
-    def _library(self) -> frozenset[SourceFile]:
-        return frozenset(self.program.library.sources)
-
     def is_library(self, source: SourceFile) -> bool:
-        return source in self._library or source in self.resolution.drawings
+        return source in self.resolution.standard_sources
 
     def file(self, source: SourceFile) -> Path | None:
         """Returns the file of a source; None for a built-in one."""
         if source is self.source:
             return self.path
-        if source in self.resolution.drawings:
-            return self.path.parent / source.name
-        if self.is_library(source):
+        if source in self.program.library.sources:
             return resources.resource(source.name)
-        return self.path.parent / source.name if source in self._files else None
+        is_imported = any(module.source is source for module in self.resolution.modules)
+        return self.path.parent / source.name if is_imported or self.is_library(source) else None
 
     @cached_property
-    def _files(self) -> frozenset[SourceFile]:
-        return frozenset(module.source for module in self.program.resolution.modules)
-
-    @cached_property
-    def params_written(self) -> Mapping[Span, ast.Param]:
-        """The params of the text and of the files that it imports, by their places."""
+    def _params(self) -> Mapping[Span | None, ast.Param]:
         nodes = (node for module in self.resolution.modules for node in ast.walk(module))
         return {node.span: node for node in nodes if isinstance(node, ast.Param)}
+
+    def declaration(self, knob: Knob) -> ast.Param | None:
+        """Returns the declaration of a param in the text or a file that it imports; None in the library."""
+        return self._params.get(knob.span)
 
     @cached_property
     def tokens(self) -> Tokens:
@@ -250,15 +288,10 @@ def hasty(settings: Settings = SETTINGS) -> Settings:
     return replace(settings, solving=replace(settings.solving, explain=False))
 
 
-def look(path: Path, text: str, world: World, settings: Settings = SETTINGS) -> View:
-    """Checks a program. Never raises for its contents."""
-    source = SourceFile(path.name, text)
-    return View(path, source, world, *pipeline.front(source, world, settings))
-
-
-def look_at(path: Path, parsed: Parsed, world: World) -> View:
-    """Checks a program that is parsed."""
-    return View(path, parsed.module.span.source, world, *pipeline.front(parsed, world, SETTINGS))
+def look(path: Path, text: str | Parsed, world: World, settings: Settings = SETTINGS) -> View:
+    """Checks a program, parsed or not. Never raises for its contents."""
+    read = SourceFile(path.name, text) if isinstance(text, str) else text
+    return View(path, world, *pipeline.front(read, world, settings))
 
 
 def run(
@@ -272,9 +305,8 @@ def run(
 
     Raises Cancelled where the run is given up (see `common.running`).
     """
-    outcome = pipeline.compile(
-        view.source, view.world, params, settings, memory=memory, checked=(view.program, view.found)
-    )
+    checked = (view.program, view.found)
+    outcome = pipeline.compile(view.source, view.world, params, settings, memory=memory, checked=checked)
     drawn = outcome if outcome.drawing is not None else last.drawn if last is not None else None
     return replace(view, outcome=outcome, drawn=drawn, params=params)
 
@@ -320,22 +352,16 @@ class Project:
         """True if all that a program imports could be read, and is unchanged."""
         resolution = view.resolution
         imports = (s for m in resolution.modules for s in m.statements if isinstance(s, ast.Import))
-        return (
-            all(statement in resolution.imports for statement in imports)
-            and all(self._says(view, module) for module in resolution.modules if module is not view.module)
-            and all(self._holds(view, drawing) for drawing in resolution.drawings.values())
-        )
-
-    def _holds(self, view: View, drawing: ImportedDrawing) -> bool:
+        others = (module.source for module in resolution.modules if module is not view.module)
+        files = ((source, view.file(source)) for source in others)
         try:
-            return digest(view.world.read_bytes(drawing.module.source.name)) == drawing.digest
-        except FileError:
-            return False
-
-    def _says(self, view: View, module: ast.Module) -> bool:
-        file = view.file(module.source)
-        try:
-            return file is not None and self.workspace.text(file) == module.source.text
+            return (
+                all(statement in resolution.imports for statement in imports)
+                and all(file and self.workspace.text(file) == source.text for source, file in files)
+                and all(
+                    digest(view.world.read_bytes(s.name)) == d.digest for s, d in resolution.drawings.items()
+                )
+            )
         except FileError:
             return False
 

@@ -1,1 +1,1 @@
-"""The language server: the answers of `aidl_lang.tools.ide` over the Language Server Protocol."""
+"""The language server: the answers of `aidl_lang.tools.ide` over its protocol, registered theme by theme."""

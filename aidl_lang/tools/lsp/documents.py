@@ -1,4 +1,4 @@
-"""The open texts of the editor, each with its newest views, and what is said of them in the protocol."""
+"""The open texts of the editor, each with its newest views, and what is said and asked of them."""
 
 from __future__ import annotations
 
@@ -7,12 +7,17 @@ import os
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import field
+from functools import partial
+from operator import eq
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeAlias, TypeVar, get_args
 from urllib.parse import quote, unquote, urlsplit
 
+import attrs
+import cattrs
 from lsprotocol import types
 from pygls import uris
+from pygls.exceptions import JsonRpcInvalidParams
 
 from aidl_lang.common.diagnostics import Diagnostic, Edit, Label, Severity
 from aidl_lang.common.records import record
@@ -23,12 +28,6 @@ from aidl_lang.tools.ide.workspace import Positions, Unit, View
 
 _HALVES = re.compile("[\ud800-\udfff]")
 """Surrogate halves of characters, which JSON can hold and no text may."""
-
-
-@record(eq=False)
-class _Waiting:
-    is_there: Callable[[], bool]
-    ready: asyncio.Future[None]
 
 
 @record(eq=False)
@@ -68,7 +67,7 @@ class Document:
     is_open: bool = True
     memory: Memory = field(default_factory=Memory)
     editing: asyncio.Lock = field(default_factory=asyncio.Lock)
-    _waiting: list[_Waiting] = field(default_factory=list)
+    _waiting: list[tuple[Callable[[], bool], asyncio.Future[None]]] = field(default_factory=list)
 
     async def until_seen(self, serial: int) -> None:
         """Returns when the text at a serial, or a newer one, was looked at, or when it is closed."""
@@ -80,16 +79,17 @@ class Document:
 
     async def _until(self, is_there: Callable[[], bool], seconds: float | None) -> None:
         if self.is_open and not is_there():
-            waiting = _Waiting(is_there, asyncio.get_running_loop().create_future())
-            self._waiting.append(waiting)
-            await asyncio.wait([waiting.ready], timeout=seconds)
+            ready: asyncio.Future[None] = asyncio.get_running_loop().create_future()
+            self._waiting.append((is_there, ready))
+            await asyncio.wait([ready], timeout=seconds)
 
     def tell(self) -> None:
         """Wakes those who wait for the present state."""
         for waiting in list(self._waiting):
-            if waiting.is_there() or not self.is_open:
+            is_there, ready = waiting
+            if is_there() or not self.is_open:
                 self._waiting.remove(waiting)
-                waiting.ready.set_result(None)
+                ready.set_result(None)
 
     def apply(self, changes: Sequence[types.TextDocumentContentChangeEvent], unit: Unit) -> None:
         """Changes the text. Ranges that do not exist mean the nearest that do."""
@@ -204,13 +204,15 @@ START = types.Range(types.Position(0, 0), types.Position(0, 0))
 
 @record(eq=False)
 class Converter:
-    """Converts for the view of the document `own`; `versions` are those of the open files at that time."""
+    """Converts for the view of the document `own`; `versions` are those of the open files at that time, None
+    for a client that knows of none.
+    """
 
     view: View
     own: str
     documents: Documents
     unit: Unit
-    versions: Mapping[Path, int] = field(default_factory=dict)
+    versions: Mapping[Path, int] | None
     _positions: dict[SourceFile, Positions] = field(default_factory=dict)
 
     def _of(self, source: SourceFile) -> Positions:
@@ -253,28 +255,22 @@ class Converter:
     def edits(self, edits: Iterable[Edit]) -> list[types.TextEdit]:
         return [self.edit(edit) for edit in edits]
 
-    def by_file(self, edits: Iterable[Edit]) -> dict[Path, list[Edit]]:
-        """Groups edits by file; drops those without a file."""
+    def change(self, edits: Iterable[Edit]) -> types.WorkspaceEdit:
+        """Returns edits of the program, without those that are in no file."""
         found: dict[Path, list[Edit]] = {}
         for edit in edits:
             if (path := self.view.file(edit.span.source)) is not None:
                 found.setdefault(path, []).append(edit)
-        return found
+        return self.changes(found)
 
-    def changes(self, edits: Mapping[Path, Sequence[Edit]], with_versions: bool) -> types.WorkspaceEdit:
+    def changes(self, edits: Mapping[Path, Sequence[Edit]]) -> types.WorkspaceEdit:
         """Returns edits by file; where the client knows of versions, with the version they are made for."""
         made = {path: self.edits(each) for path, each in edits.items()}
-        if not with_versions:
+        if self.versions is None:
             return types.WorkspaceEdit(changes={self.uri_of(path): each for path, each in made.items()})
-        return types.WorkspaceEdit(
-            document_changes=[
-                types.TextDocumentEdit(
-                    types.OptionalVersionedTextDocumentIdentifier(self.uri_of(path), self.versions.get(path)),
-                    each,
-                )
-                for path, each in made.items()
-            ]
-        )
+        named = types.OptionalVersionedTextDocumentIdentifier
+        files = ((named(self.uri_of(p), self.versions.get(p)), each) for p, each in made.items())
+        return types.WorkspaceEdit(document_changes=[types.TextDocumentEdit(*each) for each in files])
 
 
 # --- Publishes diagnostics to the client, for each file.
@@ -294,31 +290,24 @@ def converted(
 ) -> Iterator[tuple[str, types.Diagnostic]]:
     """Yields diagnostics with the URI that shows each; those of no file of the user's begin `own`."""
     for diagnostic in found:
-        span = diagnostic.span
+        span, code = diagnostic.span, diagnostic.code
         if span is None or convert.view.is_library(span.source) or (uri := convert.uri(span.source)) is None:
             uri, place = own, START
         else:
             place = convert.range(span)
-        yield uri, _converted(diagnostic, convert, place)
-
-
-def _converted(diagnostic: Diagnostic, convert: Converter, place: types.Range) -> types.Diagnostic:
-    return types.Diagnostic(
-        range=place,
-        message=worded(diagnostic),
-        severity=_SEVERITY[diagnostic.severity],
-        code=diagnostic.code,
-        code_description=types.CodeDescription(resource(f"docs/diagnostics/{diagnostic.code}.md").as_uri()),
-        source=SOURCE,
-        tags=[types.DiagnosticTag.Unnecessary] if diagnostic.code in _UNNECESSARY else None,
-        related_information=list(_related(diagnostic, convert)) or None,
-    )
-
-
-def worded(diagnostic: Diagnostic) -> str:
-    """Returns the message and the hints, line by line."""
-    said = [diagnostic.message, *(f"hint: {hint}" for hint in diagnostic.hints)]
-    return "\n".join(said)
+        yield (
+            uri,
+            types.Diagnostic(
+                range=place,
+                message="\n".join([diagnostic.message, *(f"hint: {hint}" for hint in diagnostic.hints)]),
+                severity=_SEVERITY[diagnostic.severity],
+                code=code,
+                code_description=types.CodeDescription(resource(f"docs/diagnostics/{code}.md").as_uri()),
+                source=SOURCE,
+                tags=[types.DiagnosticTag.Unnecessary] if code in _UNNECESSARY else None,
+                related_information=list(_related(diagnostic, convert)) or None,
+            ),
+        )
 
 
 def _related(diagnostic: Diagnostic, convert: Converter) -> Iterator[types.DiagnosticRelatedInformation]:
@@ -363,3 +352,160 @@ class Publisher:
         said = [each for by_uri in self._told.values() for each in by_uri.get(uri, ())]
         unique = {(repr(each.range), each.code, each.message): each for each in said}
         self._send(types.PublishDiagnosticsParams(uri, list(unique.values()), version))
+
+
+# --- Parameters of our own requests. Clients may send anything: values of other types are refused.
+
+Value: TypeAlias = float | str | bool
+Texts: TypeAlias = tuple[str, ...]
+Values: TypeAlias = dict[str, Value]
+Words: TypeAlias = dict[str, str]
+Point: TypeAlias = tuple[float, float]
+T = TypeVar("T")
+
+_LONGEST = 8_000
+"""Most characters of a name or a URI."""
+
+
+@attrs.frozen(kw_only=True)
+class OfDocument:
+    """Parameters about an open document.
+
+    uri     of the document
+    viewer  the asking viewer of the document, as the client calls it
+    """
+
+    uri: str
+    viewer: str = ""
+
+
+@attrs.frozen(kw_only=True)
+class Show(OfDocument):
+    """The picture to show: `show` are the layers over the drawing."""
+
+    show: Texts = ()
+
+
+@attrs.frozen(kw_only=True)
+class OfVersion(OfDocument):
+    """`version` is that of the meant text; None: the text as it is."""
+
+    version: int | None = None
+
+
+@attrs.frozen(kw_only=True)
+class DraggedPoint:
+    id: str
+    to: Point
+
+
+@attrs.frozen(kw_only=True)
+class Try(OfVersion):
+    """`rests` tells that nothing newer is on the way: what is wrong is then explained."""
+
+    knobs: Values = attrs.field(factory=dict)
+    drag: DraggedPoint | None = None
+    rests: bool = False
+
+
+@attrs.frozen(kw_only=True)
+class SetKnob(OfVersion):
+    path: str
+    value: Value
+
+
+@attrs.frozen(kw_only=True)
+class Drag(OfVersion):
+    """The parameters for leaving a point where it was dragged."""
+
+    id: str
+    to: Point
+
+
+@attrs.frozen(kw_only=True)
+class ApplyFix(OfDocument):
+    """A fix of a problem of the picture of a version, both by number."""
+
+    version: int
+    problem: int
+    fix: int
+
+
+@attrs.frozen(kw_only=True)
+class Export(OfDocument):
+    """`options` are those of a dialog, as they were typed (see `exports`)."""
+
+    format: str
+    show: Texts = ()
+    options: Words = attrs.field(factory=dict)
+
+
+@attrs.frozen(kw_only=True)
+class EntryRequest:
+    """The entry of a list of completions that is to be described."""
+
+    uri: str
+    list: int
+    entry: int
+
+
+@attrs.frozen(kw_only=True)
+class ActionRequest:
+    """The code action that is to be carried out."""
+
+    uri: str
+    version: int
+    kind: str
+    start: int
+    end: int
+
+
+def read(params: object, kind: type[T]) -> T:
+    """Returns the parameters in plain data; null values count as absent. Raises JsonRpcInvalidParams."""
+    if not isinstance(params, Mapping):
+        raise JsonRpcInvalidParams("the parameters are no object")
+    try:
+        return _converter.structure({k: v for k, v in params.items() if v is not None}, kind)
+    except cattrs.ClassValidationError as error:
+        raise JsonRpcInvalidParams("; ".join(cattrs.transform_error(error))) from None
+
+
+_IS: dict[type, Callable[[Any], bool]] = {
+    str: lambda value: isinstance(value, str) and len(value) <= _LONGEST,
+    bool: lambda value: isinstance(value, bool),
+    int: lambda value: type(value) is int,
+    float: lambda value: type(value) in (int, float) and abs(value) <= 1e300,
+}
+"""Checks that plain data has a type without conversion: the library itself takes `"3"` for a number."""
+
+
+def _plain(value: Any, kind: Any) -> Any:
+    if not _IS[kind](value):
+        raise ValueError
+    return kind(value)
+
+
+def _any(value: Any, _: object) -> Any:
+    return _plain(value, type(value) if isinstance(value, str | bool) else float)
+
+
+def _mapping(value: Any, kind: Any) -> Any:
+    if not isinstance(value, Mapping):
+        raise ValueError
+    one = _any if kind == Values else _plain
+    return {_plain(name, str): one(each, str) for name, each in value.items()}
+
+
+def _tuple(value: Any, kind: Any) -> Any:
+    first, *_ = kinds = get_args(kind)
+    if not isinstance(value, list) or (... not in kinds and len(value) != len(kinds)):
+        raise ValueError
+    return tuple(_plain(each, first) for each in value)
+
+
+_converter = cattrs.Converter()
+for _kind in _IS:
+    _converter.register_structure_hook(_kind, _plain)
+_converter.register_structure_hook_func(partial(eq, Value), _any)
+_converter.register_structure_hook_func((Values, Words).__contains__, _mapping)
+_converter.register_structure_hook_func((Texts, Point).__contains__, _tuple)

@@ -33,19 +33,6 @@ from aidl_lang.tools.lsp.documents import Document, Documents, VersionedView
 
 T = TypeVar("T")
 
-_STACK = 64 * 1024 * 1024
-"""Stack of a thread, bytes: programs may be nested, and the interpreter follows them."""
-
-
-def _executor(name: str) -> ThreadPoolExecutor:
-    """Returns an executor of one thread, which starts with the first piece of work."""
-    return ThreadPoolExecutor(max_workers=1, thread_name_prefix=name)
-
-
-def give_room() -> None:
-    """Gives threads started from now on room for nested programs."""
-    threading.stack_size(_STACK)
-
 
 @record(frozen=False, eq=False)
 class Job(Generic[T]):
@@ -62,15 +49,11 @@ class Lane:
     """Does one piece of work at a time, of those under one key the newest; for use in the loop's thread."""
 
     def __init__(self, name: str, loop: asyncio.AbstractEventLoop, finished: Callable[[], None]) -> None:
-        self._executor = _executor(name)
+        self._executor = ThreadPoolExecutor(max_workers=1, thread_name_prefix=name)
         self._loop, self._finished = loop, finished
         self._waiting: dict[Hashable, Job[Any]] = {}
         self.running: Job[Any] | None = None
         self._is_closed = False
-
-    @property
-    def is_busy(self) -> bool:
-        return self.running is not None
 
     def waits(self, key: Hashable) -> bool:
         return key in self._waiting
@@ -125,7 +108,7 @@ class Answers:
     """Answers questions one after the other, off the loop. Work on a cancelled question stops."""
 
     def __init__(self, name: str) -> None:
-        self._executor = _executor(name)
+        self._executor = ThreadPoolExecutor(max_workers=1, thread_name_prefix=name)
         self._is_closing = False
 
     async def ask(self, answer: Callable[[], T]) -> T:
@@ -204,11 +187,12 @@ class Tidier:
 
     def release(self) -> None:
         """Has all looked through soon: much is of no use any more once what is under way has ended."""
-        self._loop.call_later(_RELEASED, self._look_through)
 
-    def _look_through(self) -> None:
-        self._rounds = -1
-        self.note()
+        def look_through() -> None:
+            self._rounds = -1
+            self.note()
+
+        self._loop.call_later(_RELEASED, look_through)
 
     def close(self) -> None:
         if self._planned is not None:
@@ -262,7 +246,7 @@ class Runner:
         self.limits, self.delay = limits, 0.0
         self.active: Document | None = None
         """What the user is at: it goes first."""
-        self._tidier = Tidier(loop, lambda: self.looking.is_busy or self.solving.is_busy)
+        self._tidier = Tidier(loop, lambda: any((self.looking.running, self.solving.running)))
         self.looking = Lane("looking", loop, self._tidier.note)
         self.solving = Lane("solving", loop, self._tidier.note)
         self._loop, self._is_closing = loop, False
@@ -346,8 +330,8 @@ class Runner:
             drawn = document.ran.view.drawn if document.ran is not None else None
             view = replace(future.result(), drawn=drawn)
             document.newest = VersionedView(view, version, serial)
-            if is_library(document.path):
-                document.solved = serial  # it is no program
+            if document.path.is_relative_to(resources.resource("stdlib")):
+                document.solved = serial  # it is of the library, and no program
             elif self.delay:
                 self._loop.call_later(self.delay, self._solve_if_newest, document, document.newest)
             else:
@@ -423,11 +407,6 @@ def _ask_something() -> None:
     complete(view, view.source.text.index("circle"))
     hover(view, view.source.text.index("circle"))
     preview(view)
-
-
-def is_library(path: Path) -> bool:
-    """True for a file of the standard library."""
-    return path.is_relative_to(resources.resource("stdlib"))
 
 
 def _stands_on(view: View, path: Path) -> bool:

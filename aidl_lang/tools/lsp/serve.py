@@ -19,11 +19,11 @@ from pygls.exceptions import JsonRpcException
 from aidl_lang.common.world import DATA, PROGRAM
 from aidl_lang.pipeline import Settings as Limits
 from aidl_lang.tools.lsp.documents import Settings, path_of
-from aidl_lang.tools.lsp.requests.navigation import register_appearance, register_navigation
-from aidl_lang.tools.lsp.requests.preview import register_preview
-from aidl_lang.tools.lsp.requests.writing import register_actions, register_hints, register_writing
-from aidl_lang.tools.lsp.running import LIMITS, give_room
+from aidl_lang.tools.lsp.navigation import register_appearance, register_navigation
+from aidl_lang.tools.lsp.preview import register_preview
+from aidl_lang.tools.lsp.running import LIMITS
 from aidl_lang.tools.lsp.server import Server
+from aidl_lang.tools.lsp.writing import register_actions, register_hints, register_writing
 
 # --- Notifications of the client: folders, settings, files that have changed.
 
@@ -69,15 +69,12 @@ def _take_roots(server: Server) -> None:
 
 
 async def _watch_files(server: Server) -> None:
-    known = server.client_capabilities.workspace
-    watching = known.did_change_watched_files if known is not None else None
-    if watching is None or not watching.dynamic_registration:
+    if not server.can("workspace.did_change_watched_files.dynamic_registration"):
         return
     suffixes = ",".join(suffix.removeprefix(".") for suffix in (PROGRAM, *DATA))
     watcher = types.FileSystemWatcher(f"**/*.{{{suffixes}}}")
     options = types.DidChangeWatchedFilesRegistrationOptions([watcher])
-    method = types.WORKSPACE_DID_CHANGE_WATCHED_FILES
-    registration = types.Registration("files", method, options)
+    registration = types.Registration("files", types.WORKSPACE_DID_CHANGE_WATCHED_FILES, options)
     try:
         await server.client_register_capability_async(types.RegistrationParams([registration]))
     except JsonRpcException as reason:
@@ -85,8 +82,7 @@ async def _watch_files(server: Server) -> None:
 
 
 async def _ask_settings(server: Server) -> None:
-    known = server.client_capabilities.workspace
-    if known is None or not known.configuration:
+    if not server.can("workspace.configuration"):
         return
     wanted = types.ConfigurationParams([types.ConfigurationItem(section=_SECTION)])
     try:
@@ -122,7 +118,8 @@ async def bodies(reader: asyncio.StreamReader) -> AsyncIterator[bytes]:
     """Yields the contents of the messages, until the stream ends. Skips what is no message."""
     while (length := await _header(reader)) is not None:
         if length > MOST_BYTES:
-            await _pass_over(reader, length)
+            while length > 0 and (data := await reader.read(min(length, _CHUNK))):
+                length -= len(data)
             continue
         try:
             yield await reader.readexactly(length)
@@ -145,11 +142,6 @@ async def _header(reader: asyncio.StreamReader) -> int | None:
             length = int(found[1])
         elif not line.strip() and length is not None:
             return length
-
-
-async def _pass_over(reader: asyncio.StreamReader, length: int) -> None:
-    while length > 0 and (data := await reader.read(min(length, _CHUNK))):
-        length -= len(data)
 
 
 class Output:
@@ -209,6 +201,8 @@ def claim_standard_streams() -> tuple[int, int]:
     return incoming, outgoing
 
 
+_STACK = 64 * 1024 * 1024
+"""Stack of a thread, bytes: programs may be nested, and the interpreter follows them."""
 _RECURSION = 20_000
 _SWITCH = 0.0005
 """Seconds that a thread may run before others: the message thread must not wait for a working one."""
@@ -284,7 +278,7 @@ async def _serve(reader: asyncio.StreamReader, writer: Output | asyncio.StreamWr
 
 def make_room() -> None:
     """Prepares the process for a server: programs may be nested, and whoever asks is answered at once."""
-    give_room()
+    threading.stack_size(_STACK)
     sys.setrecursionlimit(max(sys.getrecursionlimit(), _RECURSION))
     sys.setswitchinterval(_SWITCH)
     logging.basicConfig(stream=sys.stderr, format="%(levelname)s %(name)s: %(message)s")

@@ -152,15 +152,12 @@ class Asked:
     convert: Converter
     settings: Settings
     project: Project
-    client: types.ClientCapabilities
+    can: Callable[[str], bool]
+    """tells whether the client has a capability"""
 
     @property
     def view(self) -> View:
         return self.known.view
-
-    def can(self, capability: str) -> bool:
-        """Tells whether the client has a capability, as `workspace.workspace_edit.document_changes`."""
-        return bool(get_capability(self.client, capability, False))
 
 
 class Server(LanguageServer):
@@ -191,9 +188,12 @@ class Server(LanguageServer):
     def close(self) -> None:
         """Cancels the work under way."""
         self.runner.close()
-        self.answers.close()
-        self.searches.close()
-        self.sweeps.close()
+        for answers in (self.answers, self.searches, self.sweeps):
+            answers.close()
+
+    def can(self, capability: str) -> bool:
+        """Tells whether the client has a capability, as `workspace.workspace_edit.document_changes`."""
+        return bool(get_capability(self.client_capabilities, capability, False))
 
     @property
     def unit(self) -> Unit:
@@ -201,9 +201,9 @@ class Server(LanguageServer):
 
     def refresh_hints(self) -> None:
         """Makes the client ask again for hints and lenses."""
-        if get_capability(self.client_capabilities, "workspace.inlay_hint.refresh_support", False):
+        if self.can("workspace.inlay_hint.refresh_support"):
             self.workspace_inlay_hint_refresh(None)
-        if get_capability(self.client_capabilities, "workspace.code_lens.refresh_support", False):
+        if self.can("workspace.code_lens.refresh_support"):
             self.workspace_code_lens_refresh(None)
 
     def in_background(self, work: Coroutine[Any, Any, None]) -> None:
@@ -288,8 +288,29 @@ class Server(LanguageServer):
 
     def converter(self, view: View, own: str = "") -> Converter:
         """Returns the converter for the view of a document, or of another file."""
-        versions = {document.path: document.version for document in self.documents}
+        has_versions = self.can("workspace.workspace_edit.document_changes")
+        versions = {each.path: each.version for each in self.documents} if has_versions else None
         return Converter(view, own or self.documents.uri_of(view.path), self.documents, self.unit, versions)
+
+    def document(self, uri: object) -> Document:
+        """Returns an open document. Raises JsonRpcInvalidParams."""
+        document = self.documents.get(uri) if isinstance(uri, str) else None
+        if document is None:
+            raise exceptions.JsonRpcInvalidParams("this document is not open")
+        return document
+
+    async def solved_text(
+        self, uri: object, seconds: float, version: int | None = None
+    ) -> tuple[Document, VersionedView]:
+        """Returns a document as its text, or a version of it, was run. Raises JsonRpcContentModified if that
+        is gone.
+        """
+        document = self.document(uri)
+        await document.until_solved(document.serial, seconds)
+        known = document.ran
+        if known is None or known.version != document.version or version not in (None, known.version):
+            raise exceptions.JsonRpcContentModified("the text has changed")
+        return document, known
 
     async def asked(self, document: Document, patience: float = 0.0) -> Asked | None:
         """Returns the data of the present text or a newer one, solved if in time; None if it is too long."""
@@ -305,7 +326,7 @@ class Server(LanguageServer):
 
     def asked_now(self, document: Document, known: VersionedView) -> Asked:
         convert = self.converter(known.view, document.uri)
-        return Asked(document.uri, known, convert, self.settings, self.project, self.client_capabilities)
+        return Asked(document.uri, known, convert, self.settings, self.project, self.can)
 
     def answers_to(
         self,

@@ -87,12 +87,6 @@ def rewritten(file: Path, known: SourceFile, edits: Sequence[Edit]) -> tuple[byt
     return data, _mark(data) + (after.replace("\n", "\r\n") if is_converted else after).encode()
 
 
-def require(file: Path, data: bytes) -> None:
-    """Raises CannotError if a file has another content."""
-    if _read(file) != data:
-        raise _changed(file)
-
-
 def write(files: Sequence[tuple[Path, bytes]], put: Write) -> None:
     """Gives files their contents. Raises CannotError."""
     for file, data in files:
@@ -227,12 +221,9 @@ class Manuscript:
     def type(self, text: str, page: str, now: float) -> None:
         """Takes a text that a page made of the present one."""
         before = self._current
-        last = self._past[-1] if self._past and not self._future else None
-        if last is not None and last.typist is not None:
-            typist, when = last.typist
-            if typist == page and now - when < PAUSE:
-                before = last.text[0]
-                self._past.pop()
+        last = self._past[-1].typist if self._past and not self._future else None
+        if last is not None and last[0] == page and now - last[1] < PAUSE:
+            before = self._past.pop().text[0]
         self._keep(Step(_TYPING, (before, text), {}, (page, now)))
         self._become(text)
 
@@ -285,16 +276,14 @@ class Manuscript:
         before, after = step.text
         if before != self._current:
             raise CannotError("the text has changed meanwhile")
-        if step.typist is None and self.is_saved:
-            self._put(after, step.others)
-        else:
-            self._put(None, step.others)
+        self._put(after if step.typist is None and self.is_saved else None, step.others)
         self._become(after)
 
     def _put(self, text: str | None, others: Mapping[Path, tuple[bytes, bytes]]) -> None:
         """Writes a text into the file, and other files, each of which must be as it was known."""
         for path, (before, _) in others.items():
-            require(path, before)
+            if _read(path) != before:
+                raise _changed(path)
         written = [(path, after) for path, (_, after) in others.items()]
         if text is not None and text != self._in_file:
             written.append((self.path, replaced(self.path, self._in_file, text)))

@@ -20,8 +20,7 @@ from aidl_lang.common.diagnostics import Edit
 from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.tools.ide.references import CannotError
 from aidl_lang.tools.ide.workspace import SETTINGS, Positions
-from aidl_lang.tools.lsp.documents import Document
-from aidl_lang.tools.lsp.params import read
+from aidl_lang.tools.lsp.documents import Document, read
 from aidl_lang.tools.lsp.serve import make
 from aidl_lang.tools.preview import files
 from aidl_lang.tools.preview.files import Manuscript
@@ -54,12 +53,10 @@ class Page:
         self.state: Json = {}
         """what it was told of the text beside its words"""
         self.orders: deque[Request] = deque()
-        self.is_ordering = False
-        """whether an order is under way"""
         self.attempt: Request | None = None
         """what is tried next"""
-        self.is_trying = False
-        self.is_walking = False
+        self.under_way: set[str] = set()
+        """of an order, an attempt and a walk, those that are"""
         self._is_held_up = False
         self._waiting: list[tuple[bool, str]] = []
         self._news = asyncio.Event()
@@ -79,8 +76,7 @@ class Page:
 
     def tell(self, message: str) -> None:
         """Sends a message for people."""
-        params = {"type": MessageType.Error.value, "message": message}
-        self.post({"method": "window/showMessage", "params": params})
+        self.post({"method": "window/showMessage", "params": {"type": MessageType.Error, "message": message}})
 
     def refuse(self, request: Request, code: int, message: str) -> None:
         self.post({"id": request.id, "error": {"code": code, "message": message}})
@@ -113,9 +109,8 @@ def typed(text: str, changes: Any) -> str:
         raise CannotError(_INVALID)
     positions, found = Positions(text), _LINE_END.search(text)
     end = found[0] if found is not None else "\n"
-    edits = sorted((_edit(positions, change) for change in changes), reverse=True)
     later = len(text)
-    for start, stop, words in edits:
+    for start, stop, words in sorted((_edit(positions, change) for change in changes), reverse=True):
         if stop > later:
             raise CannotError(_INVALID)
         text = text[:start] + _LINE_END.sub(end, words) + text[stop:]
@@ -124,27 +119,21 @@ def typed(text: str, changes: Any) -> str:
 
 
 def _edit(positions: Positions, change: Any) -> tuple[int, int, str]:
-    """Returns the start, the end and the new words of a change."""
-    if not isinstance(change, Mapping) or not isinstance(words := change.get("text"), str):
-        raise CannotError(_INVALID)
-    start, stop = (_offset(positions, change.get(name)) for name in ("start", "end"))
-    if start > stop:
-        raise CannotError(_INVALID)
-    return start, stop, _HALVES.sub("\ufffd", words)
-
-
-def _offset(positions: Positions, place: Any) -> int:
-    if not isinstance(place, Mapping):
-        raise CannotError(_INVALID)
-    line, character = place.get("line"), place.get("character")
-    if type(line) is not int or type(character) is not int:
-        raise CannotError(_INVALID)
-    return positions.offset(line, character)
+    match change:
+        case {
+            "text": str(words),
+            "start": {"line": int(line), "character": int(character)},
+            "end": {"line": int(last), "character": int(behind)},
+        } if not any(isinstance(number, bool) for number in (line, character, last, behind)):
+            start, stop = positions.offset(line, character), positions.offset(last, behind)
+            if start <= stop:
+                return start, stop, _HALVES.sub("\ufffd", words)
+    raise CannotError(_INVALID)
 
 
 # --- The host of the pages that show a program: a client of the language server whose text is a file.
 #
-# A page speaks the server's requests (`lsp/requests/preview.py`), and is answered by it. Here pages have
+# A page speaks the server's requests (`lsp/preview.py`), and is answered by it. Here pages have
 # turns: of each one order is under way, and one attempt; of attempts the newest waits. What changes the
 # text, by order of the server or of a page, goes through the `Manuscript`, of which all pages are told.
 
@@ -224,16 +213,18 @@ class Host:
         others = [{"uri": path.as_uri(), "type": 2} for path in paths if path != self.path]
         if others:
             self._say("workspace/didChangeWatchedFiles", {"changes": others})
+        trouble = ""
         try:
             self.text.take(found.result())
         except CannotError as reason:
-            self._tell_trouble(str(reason))
-        else:
-            self._tell_trouble("")
+            trouble = str(reason)
+        if trouble and trouble != self._trouble:  # told once, not at each reading
+            for page in self.pages:
+                page.tell(trouble)
+        self._trouble = trouble
         self._renew()
 
     def _renew(self) -> None:
-        """Tells the server and the pages of what has become of the text."""
         if self.text.version != self._version:
             named: Json = {"uri": self.uri, "version": self.text.version}
             if self._version == 0:
@@ -267,13 +258,6 @@ class Host:
         if self._busy is not None:
             self._busy.cancel()
             self._busy = None
-
-    def _tell_trouble(self, message: str) -> None:
-        """Tells once that the file cannot be read, not at each reading."""
-        if message and message != self._trouble:
-            for page in self.pages:
-                page.tell(message)
-        self._trouble = message
 
     def _tell_all(self, message: Json) -> None:
         for page in self.pages:
@@ -324,33 +308,30 @@ class Host:
             if page.attempt is not None:
                 page.refuse(page.attempt, LSPErrorCodes.RequestCancelled, "there is something newer")
             page.attempt = request
-            self._try(page)
-        elif request.method == _WALK and not page.is_walking:
-            page.is_walking = True  # it takes seconds, in which orders and attempts go on
-            self._forward(page, request, partial(setattr, page, "is_walking", False))
+            self._go_on(page)
+        elif request.method == _WALK and "walk" not in page.under_way:
+            self._begin(page, request, "walk")  # it takes seconds, in which orders and attempts go on
         elif request.method == _WALK or len(page.orders) == MOST_ORDERS:
             page.refuse(request, LSPErrorCodes.RequestFailed, TOO_MUCH)
         else:
             page.orders.append(request)
             self._go_on(page)
 
-    def _try(self, page: Page) -> None:
-        if page.attempt is not None and not page.is_trying:
-            request, page.attempt, page.is_trying = page.attempt, None, True
-            self._forward(page, request, partial(self._tried, page))
-
-    def _tried(self, page: Page) -> None:
-        page.is_trying = False
-        self._try(page)
-
     def _go_on(self, page: Page) -> None:
-        if page.orders and not page.is_ordering:
-            page.is_ordering = True
-            self._forward(page, page.orders.popleft(), partial(self._carried_out, page))
+        if page.attempt is not None and "attempt" not in page.under_way:
+            request, page.attempt = page.attempt, None
+            self._begin(page, request, "attempt")
+        if page.orders and "order" not in page.under_way:
+            self._begin(page, page.orders.popleft(), "order")
 
-    def _carried_out(self, page: Page) -> None:
-        page.is_ordering = False
-        self._go_on(page)
+    def _begin(self, page: Page, request: Request, turn: str) -> None:
+        page.under_way.add(turn)
+
+        def over() -> None:
+            page.under_way.discard(turn)
+            self._go_on(page)
+
+        self._forward(page, request, over)
 
     def _forward(self, page: Page, request: Request, then: Callable[[], None]) -> None:
         if request.method in OWN:
@@ -442,7 +423,6 @@ class Host:
         self._receive({"id": number, "result": made})
 
     async def _edited(self, params: Json) -> Json:
-        """Makes an edit that the server asks for."""
         label, changes = params.get("label") or "Change", params["edit"]["documentChanges"]
         uri_of = self.server.documents.uri_of
         async with self._turn:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from functools import partial
 
@@ -28,22 +28,12 @@ from aidl_lang.checking.types import (
     accepts,
 )
 from aidl_lang.checking.units import ANGLE
-from aidl_lang.geometry.solved import SolvedGeometry, SolvedStructure
 from aidl_lang.parser import standing_before
 from aidl_lang.syntax import ast
 from aidl_lang.syntax.tables import KINDS, kind_of
 from aidl_lang.tools.ide.completion import drafts, names
 from aidl_lang.tools.ide.completion.context import CONDITION, Context, KnownName, Use, context_of
-from aidl_lang.tools.ide.completion.drafts import (
-    MOST,
-    Completion,
-    Draft,
-    Files,
-    ranked,
-    stop,
-    words_of,
-    written_out,
-)
+from aidl_lang.tools.ide.completion.drafts import MOST, Completion, Draft, Files
 from aidl_lang.tools.ide.completion.names import constraints, forms, importing, thing_kind
 from aidl_lang.tools.ide.references import parameter_node
 from aidl_lang.tools.ide.signatures import Reading, fenced, is_public, of_parameter, of_public
@@ -58,20 +48,21 @@ from aidl_lang.tools.vocabulary import OF_WORD, vocabulary
 _MEMBERS, _FIELDS, _DEMANDS, _BOX, _METHODS, _UNFIT = 0.0, 1.0, 1.7, 2.0, 3.0, 4.0
 _MOST_INDICES = 12
 _SEEN = frozenset(
-    (SymbolKind.PARAM, SymbolKind.LET, SymbolKind.VAR, SymbolKind.GEOMETRY, SymbolKind.STRUCTURE)
-) | {SymbolKind.ARGUMENT}
+    {
+        *(SymbolKind.PARAM, SymbolKind.LET, SymbolKind.VAR),
+        *(SymbolKind.GEOMETRY, SymbolKind.STRUCTURE, SymbolKind.ARGUMENT),
+    }
+)
 _NUMBER = re.compile(r"-?\d+")
 
 
 def members(context: Context, value: ast.Expression) -> Iterator[Draft]:
     """Yields members of the value before the dot, and calls that take it as first argument."""
-    check = context.view.program.inference
-    if isinstance(value, ast.Name):
-        symbol = context.view.resolution.uses.get(value)
-        if symbol is not None and symbol.kind is SymbolKind.NAMESPACE and symbol.scope is not None:
-            yield from _of_file(context, symbol.scope.spaces.get(symbol.name))
-            return
-    fact = check.fact(value)
+    symbol = context.view.resolution.uses.get(value) if isinstance(value, ast.Name) else None
+    if symbol is not None and symbol.kind is SymbolKind.NAMESPACE and symbol.scope is not None:
+        yield from _of_file(context, symbol.scope.spaces.get(symbol.name))
+        return
+    fact = context.view.program.inference.fact(value)
     if isinstance(value, ast.Number) or isinstance(fact.type, NumberType):
         return
     listed: set[str] = set()
@@ -85,14 +76,12 @@ def members(context: Context, value: ast.Expression) -> Iterator[Draft]:
 def _of_file(context: Context, scope: SymbolScope | None) -> Iterator[Draft]:
     if scope is None:
         return
-    check = context.view.program.inference
     for name, symbol in scope.values.items():
         if symbol.kind in (SymbolKind.PARAM, SymbolKind.LET):
-            known = KnownName(name, symbol, of_symbol(check, symbol))
+            known = KnownName(name, symbol, of_symbol(context.view.program.inference, symbol))
             yield names.of_name(known, _MEMBERS)
     for name in (*scope.callables, *scope.aliases):
-        found = scope.called(name)
-        if found is not None:
+        if (found := scope.called(name)) is not None:
             yield names.call(context, name, found[1], _MEMBERS, scope.aliases.get(name))
 
 
@@ -104,11 +93,8 @@ def _names(context: Context, fact: Fact) -> _Named:
         case StructureType() if fact.of is not None:
             for name, symbol in context.view.resolution.scope_of(fact.of).values.items():
                 if symbol.kind in _SEEN:
-                    yield (
-                        _MEMBERS + 0.5 * (symbol.kind in (SymbolKind.LET, SymbolKind.ARGUMENT)),
-                        name,
-                        symbol,
-                    )
+                    is_late = symbol.kind in (SymbolKind.LET, SymbolKind.ARGUMENT)
+                    yield _MEMBERS + 0.5 * is_late, name, symbol
             yield from _plain((*builtins.BOX, "bb"), _BOX)
             yield from _plain(builtins.STRUCTURE, _BOX + 0.5)
         case GeometryType(kind):
@@ -125,8 +111,6 @@ def _names(context: Context, fact: Fact) -> _Named:
             yield from _plain(builtins.PATTERN.get(fact.pattern, {}), _MEMBERS)
             yield from _names(context, fact.element())
             yield from _plain((*builtins.BOX, "bb"), _BOX)
-        case _:
-            pass
 
 
 def _plain(found: Iterable[str], tier: float) -> _Named:
@@ -147,21 +131,17 @@ def _of_shape(context: Context, definition: ast.Node) -> _Named:
 
 
 def _member(context: Context, base: Fact, name: str, tier: float, symbol: Symbol | None) -> Draft:
-    check = context.view.program.inference
-    identifier = ast.Identifier(name, span=context.path[-1].span)
-    nothing = ast.Name(name, span=context.path[-1].span)
-    fact = member_of(check, base, ast.Member(nothing, identifier, span=context.path[-1].span))
-    wanted = context.wanted
-    if wanted != CONDITION and wanted.distance(fact.type) is None:
+    here = context.path[-1].span
+    node = ast.Member(ast.Name(name, span=here), ast.Identifier(name, span=here), span=here)
+    fact = member_of(context.view.program.inference, base, node)
+    if context.wanted != CONDITION and context.wanted.distance(fact.type) is None:
         tier += _UNFIT if isinstance(fact.type, NumberType | PointType) else 0.5
-    is_array = symbol is not None and symbol.is_array
     if symbol is None:
         described = partial(fenced, f"{name}: {fact.type}")
         return Draft(name, "field", tier, detail=str(fact.type), describe=described)
     kind = "field" if symbol.kind is SymbolKind.ARGUMENT else str(symbol.kind)
-    known = KnownName(name, symbol, fact)
-    text = names.detail(known) if not is_array else str(fact.type)
-    return Draft(name, kind, tier, detail=text, describe=partial(names.about, symbol))
+    detail = str(fact.type) if symbol.is_array else names.detail(KnownName(name, symbol, fact))
+    return Draft(name, kind, tier, detail=detail, describe=partial(names.about, symbol))
 
 
 def _methods(context: Context, fact: Fact) -> Iterator[Draft]:
@@ -169,40 +149,30 @@ def _methods(context: Context, fact: Fact) -> Iterator[Draft]:
     if isinstance(fact.type, AnyType | RecordType):
         return
     words = vocabulary()
-    above = context.site.parent(2)
-    is_demand = context.use is Use.CONSTRAINT and isinstance(
-        above, ast.ExpressionStatement | ast.Constrain | ast.Block | ast.Prefer | ast.Binary
-    )
-    known: list[str] = []
-    if is_demand:
-        known += [*words.relations, *words.constraints]
-        known += sorted(EDITS & {*words.operations})
-    known += words.functions
+    holders = ast.ExpressionStatement | ast.Constrain | ast.Block | ast.Prefer | ast.Binary
+    is_demand = context.use is Use.CONSTRAINT and isinstance(context.site.parent(2), holders)
+    demands = (*words.relations, *words.constraints, *sorted(EDITS & {*words.operations}))
     own = [name for name, _ in context.callables()]
-    kind = thing_kind(fact)
-    for name in (*own, *known):
+    for name in (*own, *(demands if is_demand else ()), *words.functions):
         signatures = context.called(name)
-        distance = _first_fits(fact, signatures, name, kind) if signatures else None
-        demands = [s.kind is ast.ConstraintDefinition for s in signatures]
-        if distance is None or (not is_demand and all(demands)):
+        distance = _first_fits(fact, signatures, name) if signatures else None
+        demanding = [s.kind is ast.ConstraintDefinition for s in signatures]
+        if distance is None or (not is_demand and all(demanding)):
             continue
-        tier = (_DEMANDS if is_demand and demands[0] else _METHODS) + 0.1 * distance
+        tier = (_DEMANDS if is_demand and demanding[0] else _METHODS) + 0.1 * distance
         text = names.called(context, name, signatures, skipped=1)
         yield names.of_call(name, "method", tier + 0.05 * (name not in own), text, signatures)
 
 
-def _first_fits(fact: Fact, signatures: list[Signature], name: str, kind: str) -> float | None:
+def _first_fits(fact: Fact, signatures: list[Signature], name: str) -> float | None:
     """Returns how well a callable's first parameter takes a thing; None if it does not."""
-    table: Mapping[str, object] = forms()
-    if name in table and all(s.standard for s in signatures):
-        pairs = [len(form.pairs) for form in forms()[name] if any(first == kind for first, _ in form.pairs)]
-        return min(pairs) / 100 if pairs else None
-    distances = [
-        d
-        for s in signatures
-        if s.parameters and (d := accepts(s.parameters[0][1], fact.type)) is not None and d < 3
-    ]
-    return min(distances) if distances else None
+    if name in forms() and all(s.standard for s in signatures):
+        pairs = (form.pairs for form in forms()[name])
+        kind = thing_kind(fact)
+        return min((len(p) / 100 for p in pairs if any(first == kind for first, _ in p)), default=None)
+    firsts = [s.parameters[0][1] for s in signatures if s.parameters]
+    distances = [d for first in firsts if (d := accepts(first, fact.type)) is not None]
+    return min((d for d in distances if d < 3), default=None)
 
 
 def indices(context: Context, index: ast.Index) -> Iterator[Draft]:
@@ -211,15 +181,13 @@ def indices(context: Context, index: ast.Index) -> Iterator[Draft]:
     if drawn is None or drawn.model is None:
         return
     name = index.value.span.one_line.rpartition(".")[2]
-    found: set[int] = set()
-    for structure in drawn.model.root.walk():
-        things: list[SolvedStructure | SolvedGeometry] = [*structure.structures, *structure.geometry]
-        for member in things:
-            array, _, index_text = member.name.partition("[")
-            if array == name and (number := _NUMBER.match(index_text)):
-                found.add(int(number[0]))
-    for place in sorted(found)[:_MOST_INDICES]:
-        yield Draft(str(place), "word", _FIELDS, detail=f"{name}[{place}]")
+    structures = list(drawn.model.root.walk())
+    listed = [each.name for s in structures for each in s.structures]
+    listed += [each.name for s in structures for each in s.geometry]
+    places = (rest for array, _, rest in (each.partition("[") for each in listed) if array == name)
+    found = {int(number[0]) for place in places if (number := _NUMBER.match(place))}
+    for at in sorted(found)[:_MOST_INDICES]:
+        yield Draft(str(at), "word", _FIELDS, detail=f"{name}[{at}]")
     if found:
         yield Draft("-1", "word", _BOX, detail=f"the last of {len(found)}")
 
@@ -255,27 +223,21 @@ def _argument(context: Context, signature: Signature, name: str, kind: Type, tie
     default = node.default.span.one_line if node is not None and node.default is not None else ""
     is_named = _NAMED.match(context.site.following) is not None
     text = name if is_named else f"{name}: {_proposed(signature, name, kind, default)}"
-    return Draft(
-        f"{name}:",
-        "argument",
-        tier,
-        text,
-        str(kind) + (f" = {default}" if default else ""),
-        not is_named,
-        describe=partial(of_parameter, signature, name),
-    )
+    detail = str(kind) + (f" = {default}" if default else "")
+    described = partial(of_parameter, signature, name)
+    return Draft(f"{name}:", "argument", tier, text, detail, not is_named, describe=described)
 
 
 def _proposed(signature: Signature, name: str, kind: Type, default: str) -> str:
     """Returns a snippet placeholder with a value that the parameter takes."""
-    if isinstance(kind, TextType) and (words := words_of(signature, name)):
+    if isinstance(kind, TextType) and (words := drafts.words_of(signature, name)):
         listed = [word if word.isidentifier() else f'"{word}"' for word in words if word != "free"]
         return f"${{1|{','.join(listed)}|}}"
     if default and len(default) < _LONGEST_DEFAULT:
-        return stop(1, default)
+        return drafts.stop(1, default)
     match kind:
         case NumberType(dimension, whole):
-            return stop(1, "45deg" if dimension == ANGLE else "3" if whole else "10")
+            return drafts.stop(1, "45deg" if dimension == ANGLE else "3" if whole else "10")
         case PointType():
             return "(${1:0}, ${2:0})"
         case TextType():
@@ -283,9 +245,9 @@ def _proposed(signature: Signature, name: str, kind: Type, default: str) -> str:
         case TruthType():
             return "${1|true,false|}"
         case ListType():
-            return f"[{stop(1, name)}]"
+            return f"[{drafts.stop(1, name)}]"
         case _:
-            return stop(1, name)
+            return drafts.stop(1, name)
 
 
 # --- Completion of statements and of the words that continue one.
@@ -299,7 +261,6 @@ _OWN = {
 }
 """Statements without a snippet, or with another one, in the snippets of all editors (see `snippets`)."""
 _IN_ITEMS = ("let", "for", "if", "prefer", "constrain")
-_AT_TOP = ("import",)
 _CLAUSES = {
     "weight": "weight ${1:2}",
     "step": "step ${1:5}",
@@ -341,11 +302,10 @@ def kinds(site: EditSite, tier: float) -> Iterator[Draft]:
 
 
 def _keywords(site: EditSite, tier: float) -> Iterator[Draft]:
-    words = vocabulary()
     is_top = site.automaton.open_blocks() == 0
-    among = _IN_ITEMS if not site.takes("todo") else words.statements
+    among = vocabulary().statements if site.takes("todo") else _IN_ITEMS
     for number, word in enumerate(among):
-        if site.takes(word) and (is_top or word not in _AT_TOP):
+        if site.takes(word) and (is_top or word != "import"):
             yield _statement(site, word, tier + number / 100)
 
 
@@ -354,7 +314,8 @@ def _statement(site: EditSite, word: str, tier: float) -> Draft:
     rest = site.following.partition("\n")[0].strip()
     if rest and not rest.startswith("}"):
         return _keyword(word, tier, word)
-    return _keyword(word, tier, _OWN.get(word) or (written_out(OF_WORD[word]) if word in OF_WORD else word))
+    text = drafts.written_out(OF_WORD[word]) if word in OF_WORD else word
+    return _keyword(word, tier, _OWN.get(word, text))
 
 
 def _keyword(word: str, tier: float, text: str = "") -> Draft:
@@ -376,20 +337,17 @@ def _shapes(context: Context) -> Iterator[Draft]:
         return
     for name in (*own, *words.primitives, *words.shapes, *words.templates):
         called = context.called(name)
-        if any(
-            s.standard or s.kind not in (ast.ConstraintDefinition, ast.FunctionDefinition) for s in called
-        ):
+        is_of_values = (ast.ConstraintDefinition, ast.FunctionDefinition)
+        if any(s.standard or s.kind not in is_of_values for s in called):
             draft = names.call(context, name, called, _SHAPES - 0.5 * (name in own))
             yield replace(draft, text=f"${{1:name}} = {name}($2)", is_snippet=True)
 
 
 def clauses(site: EditSite, *, is_condition: bool) -> Iterator[Draft]:
     """Yields words that continue the present statement: `at`, `in`, `step`, `and`, …"""
-    words = vocabulary()
+    known = (*vocabulary().clauses, "else", "if", *vocabulary().word_operators, "as", "from", "then")
     operand = not site.may_end and site.takes("NUMBER")
-    for number, word in enumerate(
-        (*words.clauses, "else", "if", *words.word_operators, "as", "from", "then")
-    ):
+    for number, word in enumerate(known):
         if _goes_on(site, word, operand=operand, is_condition=is_condition):
             ends_block = site.spot.before is not None and site.spot.before.kind == "}"
             text = _CLAUSES.get(word, _OWN["else"] if word == "else" and ends_block else word)
@@ -426,35 +384,26 @@ def complete(view: View, offset: int, files: Files | None = None) -> list[Comple
         case Where.COMMENT:
             return []
         case Where.STRING:
-            drafts = list(_in_string(view, spot, files))
+            found = _in_string(view, spot, files)
         case Where.NUMBER:
-            drafts = list(_behind_number(view, spot))
+            is_behind = spot.offset >= spot.start and (spot.before is None or spot.before.kind != ".")
+            found = drafts.units(_of_literal(view, spot)) if is_behind else iter(())
         case _:
-            site = site_at(view, spot)
-            return ranked(_drafts(site, files), site.replaced, site.prefix)
+            found = _drafts(site_at(view, spot), files)
     prefix = view.source.text[spot.start : spot.offset]
-    return ranked(drafts, view.span(spot.start, spot.end), prefix)
+    return drafts.ranked(found, view.span(spot.start, spot.end), prefix)
 
 
 def _in_string(view: View, spot: Spot, files: Files | None) -> Iterator[Draft]:
     """Yields files of an import, and the words that an attribute or an argument takes."""
-    before = spot.before
-    if before is not None and before.kind in ("import", "from"):
+    if spot.before is not None and spot.before.kind in ("import", "from"):
         yield from drafts.files(view.path, files)
+    elif (context := _of_literal(view, spot)) is None:
         return
-    context = _of_literal(view, spot)
-    if context is None:
-        return
-    attribute = next((n for n in reversed(context.path) if isinstance(n, ast.Attribute)), None)
-    if attribute is not None:
+    elif (attribute := context.innermost(ast.Attribute)) is not None:
         yield from drafts.of_attribute(attribute.name.text, is_quoted=True)
     else:
         yield from drafts.choices(context, is_quoted=True)
-
-
-def _behind_number(view: View, spot: Spot) -> Iterator[Draft]:
-    if spot.offset >= spot.start and (spot.before is None or spot.before.kind != "."):
-        yield from drafts.units(_of_literal(view, spot))
 
 
 def _of_literal(view: View, spot: Spot) -> Context | None:
@@ -472,10 +421,8 @@ def _of_literal(view: View, spot: Spot) -> Context | None:
     path = tuple(around(shown.module, start))
     if not isinstance(path[-1], ast.Number | ast.String):
         return None
-    automaton = standing_before(view.source, start)
-    return context_of(
-        EditSite(view, Spot(Where.CODE, start, start, start, spot.before), automaton, shown, path)
-    )
+    here = Spot(Where.CODE, start, start, start, spot.before)
+    return context_of(EditSite(view, here, standing_before(view.source, start), shown, path))
 
 
 def _drafts(site: EditSite, files: Files | None) -> Iterator[Draft]:
@@ -537,8 +484,6 @@ def _by_node(context: Context, files: Files | None) -> Iterator[Draft]:
         case ast.Name(), _:
             yield from _value(context)
             yield from importing(context, files)
-        case _:
-            pass
 
 
 def _value(context: Context) -> Iterator[Draft]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from enum import Enum
 from functools import cached_property
+from typing import TypeVar
 
 from aidl_lang.checking.builtins import CLIP, COPYING, DERIVING, MATH, PATTERNS, STACKING
 from aidl_lang.checking.facts import Fact, ReadPlace, of_symbol
@@ -28,11 +29,12 @@ from aidl_lang.checking.types import (
 from aidl_lang.checking.units import ANGLE, LENGTH, PLAIN
 from aidl_lang.common.records import record
 from aidl_lang.syntax import ast
-from aidl_lang.tools.ide.signatures import Reading, readings
+from aidl_lang.tools.ide.signatures import Reading, readings, type_of
 from aidl_lang.tools.ide.site import PLACEHOLDER, EditSite
 from aidl_lang.tools.ide.workspace import View
 from aidl_lang.tools.vocabulary import vocabulary
 
+T = TypeVar("T")
 _ATTRIBUTES: dict[str, Type] = {
     **dict.fromkeys(("thickness", "depth", "elevation", "stroke", "dash", "halo"), NumberType(LENGTH)),
     **dict.fromkeys(("opacity", "quantity"), NumberType(PLAIN)),
@@ -60,10 +62,6 @@ class KnownName:
     symbol: Symbol
     fact: Fact
 
-    @property
-    def is_unknown(self) -> bool:
-        return bool(self.fact.reads)
-
 
 @record(eq=False)
 class Context:
@@ -76,40 +74,24 @@ class Context:
     call: tuple[ast.Call, int] | None
 
     @cached_property
-    def statement(self) -> ast.Node | None:
-        """The statement around the place."""
-        return next((n for n in reversed(self.path) if isinstance(n, _STATEMENTS)), None)
-
-    @cached_property
-    def home(self) -> ast.Node:
-        """The structure or other definition whose body contains the place, or the file."""
-        return self.scope.homes[-1]
-
-    @cached_property
     def in_items(self) -> bool:
         """True among constraints."""
         return any(isinstance(n, ast.Constrain | ast.ConstraintDefinition) for n in self.path)
 
     @cached_property
     def use(self) -> Use:
-        match self.statement:
-            case ast.Assert():
-                return Use.CHECK
-            case ast.Let() | ast.FunctionDefinition():
+        statement = next((n for n in reversed(self.path) if isinstance(n, _STATEMENTS)), None)
+        match statement:
+            case ast.Assert() | ast.Let() | ast.FunctionDefinition():
                 return Use.CHECK
             case ast.Param() | ast.Parameter() | ast.If() | ast.For() if not self.in_items:
                 return Use.CONSTANT
-            case _ if self.in_items or isinstance(self.statement, _DEMANDS):
+            case _ if self.in_items or isinstance(statement, _DEMANDS):
                 return Use.CONSTRAINT
+            case _ if self.call is not None and self.call[0].callee.text in DERIVING | PATTERNS | COPYING:
+                return Use.DERIVING
             case _:
-                return Use.DERIVING if self._derives else Use.GEOMETRY
-
-    @property
-    def _derives(self) -> bool:
-        """True in an argument of a call that derives from other geometry: `mirror(…)`."""
-        if self.call is None:
-            return False
-        return self.call[0].callee.text in DERIVING | PATTERNS | COPYING
+                return Use.GEOMETRY
 
     @cached_property
     def readings(self) -> list[Reading]:
@@ -118,6 +100,25 @@ class Context:
             return []
         found = readings(self.view.program, self.scope, self.call[0])
         return [r for r in found if r.fits] or found
+
+    @property
+    def filled(self) -> Iterator[tuple[Reading, str]]:
+        """Yields those that have a parameter for the argument at the place, with it."""
+        if self.call is None:
+            return
+        for reading in self.readings:
+            if (name := reading.filled_by(self.call[1])) is not None:
+                yield reading, name
+
+    @property
+    def is_named(self) -> bool:
+        """True in an argument that has a name."""
+        argument = self.innermost(ast.Argument)
+        return argument is not None and argument.name is not None
+
+    def innermost(self, kind: type[T]) -> T | None:
+        """Returns the innermost node of a kind around the place."""
+        return next((node for node in reversed(self.path) if isinstance(node, kind)), None)
 
     @cached_property
     def wanted(self) -> Wanted:
@@ -154,28 +155,23 @@ class Context:
                 return _of_place(node, above, path)
 
     def _compared(self, node: ast.Node, operands: tuple[ast.Expression, ...]) -> Wanted:
-        """Returns the types comparable with the other sides."""
         facts = [self.view.program.inference.fact(o) for o in operands if o is not node]
         known = next((f.type for f in facts if not isinstance(f.type, AnyType)), None)
         return _alike(known) if known is not None else Wanted()
 
     def _of_argument(self) -> Wanted:
         if self.call is None:
-            attribute = next((n for n in reversed(self.path) if isinstance(n, ast.Attribute)), None)
+            attribute = self.innermost(ast.Attribute)
             if attribute is None:
                 return Wanted()
             return Wanted((_ATTRIBUTES.get(attribute.name.text, TextType()),), f"@{attribute.name.text}")
-        number = self.call[1]
         kinds: dict[Type, None] = {}
         name = ""
-        for reading in self.readings:
-            taken = reading.taken[number] if number < len(reading.taken) else None
-            kind = reading.type_of(taken) if taken is not None else None
-            if kind is None or taken is None:
+        for reading, taken in self.filled:
+            if (kind := type_of(reading.signature, taken)) is None:
                 continue
             name = name or taken
-            positional = self.call[0].arguments[number - len(reading.taken)].name is None
-            if isinstance(kind, ListType) and positional:
+            if isinstance(kind, ListType) and not self.is_named:
                 kinds[kind.element] = None
             kinds[kind] = None
         return Wanted(() if ANY in kinds and len(kinds) == 1 else tuple(kinds), name)
@@ -189,12 +185,10 @@ class Context:
         for name, symbol in self.scope.visible().items():
             if name == PLACEHOLDER or name in MATH:
                 continue  # a module of another language is named by those who know it
-            if symbol.kind is SymbolKind.BUILTIN and not self._is_here(name):
-                continue
-            if self._is_ahead(symbol):
+            if (symbol.kind is SymbolKind.BUILTIN and not self._is_here(name)) or self._is_ahead(symbol):
                 continue
             known = KnownName(name, symbol, of_symbol(check, symbol))
-            if self.may_read(known):
+            if self._may_read(known):
                 found.append(known)
         return found
 
@@ -219,18 +213,17 @@ class Context:
             return start < nodes[0].span.end
         return self.use is Use.DERIVING and start < nodes[0].span.start
 
-    def may_read(self, known: KnownName) -> bool:
-        """Tells whether the value of a name may be read here."""
-        reads = known.fact.reads
+    def _may_read(self, known: KnownName) -> bool:
+        reads, home = known.fact.reads, self.scope.homes[-1]
         match self.use:
             case Use.CHECK:
                 return True
             case Use.CONSTANT:
                 return not reads
             case Use.CONSTRAINT:
-                return all(p.holder is self.home for p in reads)
+                return all(p.holder is home for p in reads)
             case Use.GEOMETRY:
-                own = all(p == ReadPlace(self.home) for p in reads)
+                own = all(p == ReadPlace(home) for p in reads)
                 return own and known.name != "self" and known.symbol is not self.scope.own_name
             case Use.DERIVING:
                 return all(p.holder in self.scope.homes for p in reads)
@@ -270,16 +263,13 @@ def _call_around(view: View, path: tuple[ast.Node, ...]) -> tuple[ast.Call, int]
         if isinstance(above, ast.Argument):
             continue
         if isinstance(above, ast.Call) and isinstance(node, ast.Argument):
-            before = int(above.receiver is not None and not _names_file(view, above.receiver))
+            symbol = view.resolution.uses.get(above.receiver) if above.receiver is not None else None
+            is_file = symbol is not None and symbol.kind is SymbolKind.NAMESPACE
+            before = int(above.receiver is not None and not is_file)
             return above, before + above.arguments.index(node)
         if not isinstance(above, ast.Unary | ast.Binary | ast.Conditional | ast.List | ast.Point):
             return None
     return None
-
-
-def _names_file(view: View, node: ast.Expression) -> bool:
-    symbol = view.resolution.uses.get(node)
-    return symbol is not None and symbol.kind is SymbolKind.NAMESPACE
 
 
 _DEMANDS = ast.Constrain | ast.ExpressionStatement | ast.Prefer | ast.Equation

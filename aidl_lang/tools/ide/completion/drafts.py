@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import field
 from functools import lru_cache, partial
@@ -21,7 +22,7 @@ from aidl_lang.common.records import record
 from aidl_lang.common.source import Span
 from aidl_lang.syntax import ast
 from aidl_lang.tools.ide.completion.context import Context
-from aidl_lang.tools.ide.signatures import Reading, of_callable, of_public
+from aidl_lang.tools.ide.signatures import of_callable, of_public, type_of
 from aidl_lang.tools.ide.site import EditSite
 from aidl_lang.tools.reference.collect import reference
 from aidl_lang.tools.vocabulary import SNIPPETS, Snippet, expanded, vocabulary
@@ -83,19 +84,14 @@ def ranked(drafts: Iterable[Draft], span: Span, prefix: str) -> list[Completion]
     ]
 
 
-def escaped(text: str) -> str:
-    for sign in ("\\", "$", "}"):
-        text = text.replace(sign, "\\" + sign)
-    return text
-
-
 def written_out(snippet: Snippet) -> str:
     """Writes a snippet for completion: indented as programs are, without `$0` at its end."""
     return snippet.body.replace("\t", "    ").removesuffix("$0")
 
 
 def stop(number: int, proposed: str) -> str:
-    return f"${{{number}:{escaped(proposed)}}}"
+    escaped = re.sub(r"[\\$}]", r"\\\g<0>", proposed)
+    return f"${{{number}:{escaped}}}"
 
 
 def choice(number: int, names: Sequence[str]) -> str:
@@ -137,22 +133,17 @@ def attributes(is_called: bool) -> Iterator[Draft]:
 
 def of_attribute(name: str, *, is_quoted: bool) -> Iterator[Draft]:
     """Yields the words that an attribute takes as argument."""
-    listed: Sequence[str] = ()
-    kind = "word"
-    match fold(name):
-        case "color" | "colour":
-            listed, kind = sorted(COLOR_NAMES), "color"
-        case "orientation":
-            listed = ORIENTATIONS
-        case "stroke":
-            listed = [NO_OUTLINE.value]
-        case "edges":
-            listed = EDGES
-        case "material":
-            listed = sorted(densities())
-    for word in listed:
-        bare = word.isidentifier() and name in WORDED
-        yield Draft(word, kind, 0.0, word if is_quoted or (bare and kind == "word") else f'"{word}"')
+    listed: dict[str, Sequence[str]] = {
+        **dict.fromkeys(("color", "colour"), sorted(COLOR_NAMES)),
+        "orientation": ORIENTATIONS,
+        "stroke": [NO_OUTLINE.value],
+        "edges": EDGES,
+        "material": sorted(densities()),
+    }
+    kind = "color" if fold(name) in ("color", "colour") else "word"
+    for word in listed.get(fold(name), ()):
+        is_bare = word.isidentifier() and name in WORDED and kind == "word"
+        yield Draft(word, kind, 0.0, word if is_quoted or is_bare else f'"{word}"')
 
 
 def types(context: Context) -> Iterator[Draft]:
@@ -170,26 +161,17 @@ def types(context: Context) -> Iterator[Draft]:
 
 def choices(context: Context, *, is_quoted: bool) -> Iterator[Draft]:
     """Yields the words that the parameter at this place takes."""
-    if context.call is None:
-        return
-    number = context.call[1]
-    found = dict.fromkeys(w for reading in context.readings for w in _words(reading, number))
-    for word in found:
-        named = context.call[0].arguments[number - len(context.readings[0].taken)].name is not None
+    found = ((reading.signature, name) for reading, name in context.filled)
+    for word in dict.fromkeys(word for signature, name in found for word in words_of(signature, name)):
         is_common = word in vocabulary().bare_words
-        text = word if is_quoted or (named and is_common) else f'"{word}"'
+        text = word if is_quoted or (context.is_named and is_common) else f'"{word}"'
         yield Draft(word, "word", 0.0 if is_common else 0.1, text)
-
-
-def _words(reading: Reading, number: int) -> Sequence[str]:
-    name = reading.taken[number] if number < len(reading.taken) else None
-    return words_of(reading.signature, name) if name is not None else ()
 
 
 @lru_cache(maxsize=1024)
 def words_of(signature: Signature, parameter: str, depth: int = _DEEPEST) -> Sequence[str]:
     """Returns the words that a definition, or its calls, choose among by a parameter."""
-    kind = next((k for name, k, _ in signature.parameters if name == parameter), None)
+    kind = type_of(signature, parameter)
     if not isinstance(kind, TextType | AnyType):
         return ()
     node = signature.node
@@ -203,15 +185,12 @@ def words_of(signature: Signature, parameter: str, depth: int = _DEEPEST) -> Seq
         if place is None:
             continue
         if call.callee.text == "choice":
-            return _texts(call.arguments[-1].value)
+            listed = call.arguments[-1].value
+            items = listed.items if isinstance(listed, ast.List) else ()
+            return tuple(item.value for item in items if isinstance(item, ast.String))
         if depth and (found := _words_inside(call, place, depth)):
             return found
     return ()
-
-
-def _texts(node: ast.Expression) -> Sequence[str]:
-    items = node.items if isinstance(node, ast.List) else ()
-    return tuple(item.value for item in items if isinstance(item, ast.String))
 
 
 def _words_inside(call: ast.Call, place: int, depth: int) -> Sequence[str]:
@@ -249,9 +228,7 @@ def imported_names(site: EditSite, node: ast.Import) -> Iterator[Draft]:
     scope = view.resolution.scopes[target]
     taken = {name.text for name in node.names}
     for name in (*scope.callables, *scope.aliases, *scope.values):
-        if name in taken:
-            continue
-        signatures: Sequence[Signature] = scope.callables.get(name, ())
-        symbol = scope.values.get(name)
-        kind = str(symbol.kind) if symbol is not None else "function"
-        yield Draft(name, kind, 0.0, describe=partial(of_callable, name, tuple(signatures)))
+        if name not in taken:
+            kind = str(scope.values[name].kind) if name in scope.values else "function"
+            described = partial(of_callable, name, tuple(scope.callables.get(name, ())))
+            yield Draft(name, kind, 0.0, describe=described)

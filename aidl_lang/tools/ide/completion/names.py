@@ -109,10 +109,8 @@ def calls(context: Context) -> Iterator[Draft]:
 
 def _takes_things(context: Context) -> bool:
     kinds = context.wanted.types
-    things = (GeometryType, StructureType, ListType, AnyType)
-    if context.call is None:
-        return any(isinstance(kind, things) for kind in kinds) and context.use is Use.GEOMETRY
-    return not kinds or any(isinstance(kind, things) for kind in kinds)
+    takes = any(isinstance(kind, GeometryType | StructureType | ListType | AnyType) for kind in kinds)
+    return takes and context.use is Use.GEOMETRY if context.call is None else takes or not kinds
 
 
 def _belongs(context: Context, name: str) -> bool:
@@ -219,28 +217,17 @@ def importing(context: Context, files: Files | None) -> Iterator[Draft]:
         except FileError:
             continue  # gone since, or unreadable: an import of it would report that
         for node in definitions(name, text):
-            if not context.called(node.name.text) and _may_stand(context, node):
+            # constraints among constraints, what gives a value elsewhere
+            fits = isinstance(node, ast.ConstraintDefinition) == (context.use is Use.CONSTRAINT)
+            if not context.called(node.name.text) and (fits or isinstance(node, ast.FunctionDefinition)):
                 yield _draft(context, name, node)
 
 
 @lru_cache(maxsize=128)
 def definitions(name: str, text: str) -> tuple[ast.Callable, ...]:
     """Returns the callable definitions of a file."""
-    module = parse(SourceFile(name, text)).module
-    return tuple(
-        s
-        for s in module.statements
-        if isinstance(
-            s, ast.FunctionDefinition | ast.ShapeDefinition | ast.ConstraintDefinition | ast.Structure
-        )
-        and is_definition(s)
-    )
-
-
-def _may_stand(context: Context, node: ast.Callable) -> bool:
-    """Tells whether a definition fits: constraints among constraints, what gives a value elsewhere."""
-    is_demand = context.use is Use.CONSTRAINT
-    return isinstance(node, ast.ConstraintDefinition) == is_demand or isinstance(node, ast.FunctionDefinition)
+    statements = parse(SourceFile(name, text)).module.statements
+    return tuple(s for s in statements if isinstance(s, ast.Callable) and is_definition(s))
 
 
 def _draft(context: Context, file: str, node: ast.Callable) -> Draft:
@@ -260,12 +247,10 @@ def _import(context: Context, file: str, name: str) -> Edit:
     imports = [s for s in view.module.statements if isinstance(s, ast.Import)]
     known = next((s for s in imports if s.names and s.path.value == file), None)
     if known is not None:
-        end = known.names[-1].span.end
-        return insert(view.source, end, f", {name}")
+        return insert(view.source, known.names[-1].span.end, f", {name}")
     statement = f'import {name} from "{file}"'
     if imports:
-        end = imports[-1].span.end
-        return insert(view.source, end, f"\n{statement}")
+        return insert(view.source, imports[-1].span.end, f"\n{statement}")
     return insert(view.source, int(view.source.text.startswith("\ufeff")), f"{statement}\n")
 
 
@@ -292,21 +277,9 @@ class Form:
 @cache
 def forms() -> Mapping[str, tuple[Form, ...]]:
     """Returns the forms of each constraint of the library, in the order of the reference."""
-    return read(resource(_TABLE).read_text("utf-8"))
-
-
-@cache
-def kinds() -> tuple[str, ...]:
-    """Returns the kinds of things, as the heads of the tables name them."""
-    lines = resource(_TABLE).read_text("utf-8").splitlines()
-    head = next(line for line in lines if line.startswith(_HEAD))
-    return tuple(cell.strip() for cell in head.removeprefix(_HEAD).removesuffix("|").split("|"))
-
-
-def read(page: str) -> Mapping[str, tuple[Form, ...]]:
     found: dict[str, list[Form]] = {}
     name = ""
-    for line in page.splitlines():
+    for line in _table():
         if line.startswith("## "):
             name = line[3:].strip()
         elif name and (form := _FORM.match(line)):
@@ -315,8 +288,19 @@ def read(page: str) -> Mapping[str, tuple[Form, ...]]:
             cells = [cell.strip() == _MARK for cell in row[2].split("|")]
             more = {(row[1], kind) for kind, works in zip(kinds(), cells, strict=True) if works}
             last = found[name][-1]
-            found[name][-1] = Form(last.name, last.text, last.pairs | more)
+            found[name][-1] = replace(last, pairs=last.pairs | more)
     return {name: tuple(listed) for name, listed in found.items()}
+
+
+def _table() -> list[str]:
+    return resource(_TABLE).read_text("utf-8").splitlines()
+
+
+@cache
+def kinds() -> tuple[str, ...]:
+    """Returns the kinds of things, as the heads of the tables name them."""
+    head = next(line for line in _table() if line.startswith(_HEAD))
+    return tuple(cell.strip() for cell in head.removeprefix(_HEAD).removesuffix("|").split("|"))
 
 
 def _told(words: str) -> frozenset[tuple[str, str]]:
@@ -329,23 +313,17 @@ def _told(words: str) -> frozenset[tuple[str, str]]:
 
 def thing_kind(fact: Fact) -> str:
     """Returns the kind of a thing in that table; "" for a thing that is not in it."""
-    return _kind(fact.type, is_unknown=bool(fact.reads))
-
-
-def _kind(kind: Type, *, is_unknown: bool) -> str:
-    match kind:
-        case PointType():
-            return "point" if is_unknown else ""
-        case GeometryType(name) if name in kinds():
-            return name
-        case GeometryType():
-            return "shape"
+    match fact.type:
+        case GeometryType(name):
+            return name if name in kinds() else "shape"
         case StructureType():
             return "structure"
-        case ListType():
-            return "list" if is_unknown else ""
-        case NumberType():
-            return "number" if is_unknown else ""
+        case PointType() if fact.reads:
+            return "point"
+        case ListType() if fact.reads:
+            return "list"
+        case NumberType() if fact.reads:
+            return "number"
         case _:
             return ""
 
@@ -359,7 +337,8 @@ _LETTER = re.compile(r"\b([abpq]|box)\b(?!\()|(?<![\w.])(\d+)(?=deg\b|\b)")
 
 def constraints(context: Context, behind: float = 0.0) -> Iterator[Draft]:
     """Yields all constraints possible here; `behind` is added to each tier."""
-    things = _latest([known for known in context.values if known.is_unknown and not _is_self(known)])
+    seen = (known for known in context.values if known.fact.reads and known.symbol.scope is not None)
+    things = _latest([known for known in seen if known.symbol.kind is not SymbolKind.BUILTIN])
     for name, alias in context.callables():
         signatures = context.called(name)
         if any(s.kind is ast.ConstraintDefinition for s in signatures):
@@ -382,10 +361,6 @@ def _latest(things: Sequence[KnownName]) -> list[KnownName]:
     return found[::-1]
 
 
-def _is_self(known: KnownName) -> bool:
-    return known.symbol.kind is SymbolKind.BUILTIN or known.symbol.scope is None
-
-
 def _standard(
     context: Context,
     name: str,
@@ -403,12 +378,11 @@ def _standard(
 
 def _form_tier(form: Form, things: Sequence[KnownName]) -> float:
     """Returns the tier of a form: a specific one whose things exist before one that takes anything."""
-    found = [
-        pair for a, b in _chosen(form, things) if (pair := (thing_kind(a.fact), b and thing_kind(b.fact)))
-    ]
-    if not found:
+    pair = next(_chosen(form, things), None)
+    if pair is None:
         return _FITS_NOT + len(form.pairs) / 1000
-    if "structure" in found[0] and form.name in vocabulary().relations:
+    is_of_parts = any(each is not None and thing_kind(each.fact) == "structure" for each in pair)
+    if is_of_parts and form.name in vocabulary().relations:
         return _FITS_PARTS
     return (_FITS if len(form.pairs) < _FEW_PAIRS else _FITS_ANY) + len(form.pairs) / 1000
 
@@ -474,7 +448,6 @@ def _stated(name: str, signature: Signature, things: Sequence[KnownName]) -> tup
 
 
 def _takes(kind: Type, thing: KnownName) -> bool:
-    if isinstance(kind, AnyType | ListType):
-        return True
-    distance = accepts(kind, thing.fact.type)
-    return distance is not None and not isinstance(thing.fact.type, AnyType)
+    given = thing.fact.type
+    is_fit = accepts(kind, given) is not None and not isinstance(given, AnyType)
+    return isinstance(kind, AnyType | ListType) or is_fit

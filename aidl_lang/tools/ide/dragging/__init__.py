@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from collections.abc import Set as AbstractSet
 from dataclasses import field, replace
-from functools import cached_property, lru_cache
+from functools import cached_property, lru_cache, partial
 from typing import TypeAlias
 
 import numpy as np
@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from aidl_lang import pipeline
 from aidl_lang.building.expression import Evaluator, Unknown
 from aidl_lang.building.lower import Lowered, lower
-from aidl_lang.building.model import Knob, Model
+from aidl_lang.building.model import Knob
 from aidl_lang.common.diagnostics import Edit, TooLongError
 from aidl_lang.common.names import fold
 from aidl_lang.common.prose import first_few, shortest, ticked
@@ -26,21 +26,11 @@ from aidl_lang.pipeline import Compiled
 from aidl_lang.solver import Settings, Solution, Status, solve
 from aidl_lang.syntax import ast
 from aidl_lang.tools.agents.workspace import RefusalError, edit_at
-from aidl_lang.tools.ide.dragging.mobility import (
-    AXES,
-    Grip,
-    Ways,
-    belongs,
-    grips,
-    is_somewhere,
-    movable,
-    pull,
-    values_at,
-    ways,
-)
+from aidl_lang.tools.ide.dragging import mobility
+from aidl_lang.tools.ide.dragging.mobility import AXES, Grip, Ways, is_somewhere
 from aidl_lang.tools.ide.guesses import Guess, guesses, is_same
 from aidl_lang.tools.ide.references import CannotError
-from aidl_lang.tools.ide.workspace import View, edited, hasty, run
+from aidl_lang.tools.ide.workspace import Solved, View, edited, hasty, run
 
 # --- Points that follow a `param`: found by turning each param a little; the value wanted by a secant.
 
@@ -95,7 +85,10 @@ def slopes(view: View) -> Mapping[str, Mapping[str, Vec]]:
     """Returns for each point the params that it follows, with its velocity per unit of each."""
     before, found = _places(view), dict[str, dict[str, Vec]]()
     until = time.monotonic() + _SECONDS
-    for knob in list(_numeric(view))[:MOST_KNOBS] if before else ():
+    numeric = (knob for knob in view.knobs if isinstance(knob.value, float) and not knob.choices)
+    inside = (knob for knob in numeric if fold(knob.path) not in view.set_outside)
+    written = [knob for knob in inside if _declaration(view, knob) is not None]
+    for knob in written[:MOST_KNOBS] if before else ():
         if time.monotonic() > until:
             break
         nudge = _nudge(knob)
@@ -107,20 +100,9 @@ def slopes(view: View) -> Mapping[str, Mapping[str, Vec]]:
     return found
 
 
-def _numeric(view: View) -> Iterator[Knob]:
-    """Yields the params with a number in the text of the view that are not set from outside."""
-    assert view.outcome is not None
-    given = {fold(name.strip()) for name in view.params or ()}
-    for knob in view.outcome.knobs:
-        is_number = isinstance(knob.value, float) and not knob.choices
-        if is_number and _declaration(view, knob) is not None and fold(knob.path) not in given:
-            yield knob
-
-
 def _declaration(view: View, knob: Knob) -> ast.Param | None:
-    if knob.span is None or knob.span.source is not view.source:
-        return None
-    if (node := view.params_written.get(knob.span)) is None:
+    node = view.declaration(knob)
+    if node is None or node.span.source is not view.source:
         return None
     number = node.value.operand if isinstance(node.value, ast.Unary) else node.value
     return node if isinstance(number, ast.Number) else None
@@ -128,7 +110,7 @@ def _declaration(view: View, knob: Knob) -> ast.Param | None:
 
 def _set(view: View, path: str, value: float) -> Iterator[Edit]:
     """Yields the edits that set a param. Raises RefusalError for a value that does not fit."""
-    for knob in view.outcome.knobs if view.outcome is not None else ():
+    for knob in view.knobs:
         declared = _declaration(view, knob)
         if knob.path == path and declared is not None:
             yield edit_at(knob, declared, value)
@@ -136,33 +118,33 @@ def _set(view: View, path: str, value: float) -> Iterator[Edit]:
 
 def _nudge(knob: Knob) -> float:
     value = float(knob.value)
-    if knob.low is None or knob.high is None:
+    if knob.range is None:
         return knob.step or _NUDGE * max(1.0, abs(value))
-    nudge = knob.step or _NUDGE * (knob.high - knob.low) or _NUDGE
-    return nudge if value + nudge <= knob.high else -nudge
+    low, high = knob.range
+    nudge = knob.step or _NUDGE * (high - low) or _NUDGE
+    return nudge if value + nudge <= high else -nudge
 
 
 def _places(view: View) -> dict[str, Vec]:
     """Returns all points; none of a program that does not solve."""
-    outcome = view.outcome
-    if outcome is None or outcome.built is None or outcome.evaluate is None or outcome.status != "solved":
+    solved = view.solved
+    if solved is None or not solved.holds:
         return {}
-    return {grip.id: grip.at(outcome.evaluate) for grip in grips(outcome.built)}
+    return {grip.id: grip.at(solved.evaluate) for grip in mobility.grips(solved.built)}
 
 
 def _turned(view: View, values: Mapping[str, float]) -> dict[str, Vec]:
     """Returns all points with other values of params; none if that does not solve."""
     found = pipeline.placed(view.program, {**(view.params or {}), **values})
-    return {} if found is None else {grip.id: grip.at(found[1]) for grip in grips(found[0])}
+    return {} if found is None else {grip.id: grip.at(found[1]) for grip in mobility.grips(found[0])}
 
 
 class _Tries:
     """Runs of a view with other params. The last ones are kept: a drag begins each step at the nearest."""
 
     def __init__(self, view: View) -> None:
-        assert view.outcome is not None
         self.view = view
-        self.knobs = {knob.path: knob for knob in reversed(view.outcome.knobs)}
+        self.knobs = {knob.path: knob for knob in reversed(view.knobs)}
         self._shown: dict[Values, View] = {}
         self._places: dict[Values, Mapping[str, Vec]] = {}
 
@@ -223,9 +205,7 @@ class _Tries:
         return None if best == float(knob.value) else best
 
 
-@lru_cache(maxsize=4)
-def _tries(view: View) -> _Tries:
-    return _Tries(view)
+_tries = lru_cache(maxsize=4)(_Tries)
 
 
 def _promise(knob: Knob, wanted: Vec, way: Vec) -> float:
@@ -236,8 +216,7 @@ def _promise(knob: Knob, wanted: Vec, way: Vec) -> float:
 
 
 def _clamped(knob: Knob, value: float) -> float:
-    low = -math.inf if knob.low is None else knob.low
-    high = math.inf if knob.high is None else knob.high
+    low, high = knob.range or (-math.inf, math.inf)
     return min(max(value, low), high)
 
 
@@ -284,6 +263,12 @@ _PROBE = 3.0
 """How far the drawing is moved to see whether it stays there, mm."""
 _NAMED = 2
 """Most params that a hint names."""
+_DOES = {
+    "own": ("guess", "move"),
+    "size": ("size", "change its size"),
+    "whole": ("guess", "move the drawing"),
+}
+"""What changes in the text where a point has a way by numbers, and what dragging it does."""
 
 
 @record()
@@ -307,25 +292,19 @@ class Dragged:
 
     view: View
     at: Vec
-    _origin: View = field(repr=False)
-    _grip: Grip = field(repr=False)
-    _step: float = field(repr=False)
-    _settled: tuple[Edit, ...] | None = field(default=None, repr=False)
+    _find: Callable[[], tuple[Edit, ...]] = field(repr=False)
 
     @cached_property
     def edits(self) -> tuple[Edit, ...]:
         """Returns the edits that keep the point there: only the numbers that changed. Raises CannotError."""
-        return self._settled if self._settled is not None else _edits(self._origin, self)
+        return self._find()
 
 
 @record(eq=False)
-class _Hold:
+class _Hold(Solved):
     """What can be taken hold of in a solved view, and the numbers that move it."""
 
     view: View
-    outcome: Compiled
-    model: Model
-    evaluate: Evaluator
 
     @cached_property
     def editable(self) -> list[Guess]:
@@ -338,11 +317,11 @@ class _Hold:
 
     @cached_property
     def movable(self) -> frozenset[Unknown]:
-        return movable(self.model, self.evaluate, self.written)
+        return mobility.movable(self.built, self.evaluate, self.written)
 
     @cached_property
     def grips(self) -> dict[str, Grip]:
-        found = [grip for grip in grips(self.model) if not grip.is_frame or grip.frame & self.written]
+        found = [grip for grip in mobility.grips(self.built) if grip.may_move(self.written)]
         return {grip.id: grip for grip in sorted(found, key=lambda grip: grip.depth)[:_MOST_GRIPS]}
 
     @cached_property
@@ -353,27 +332,21 @@ class _Hold:
     @cached_property
     def ways(self) -> Ways:
         found = [grip for grip, _ in self.places]
-        return ways(self.model, found, self.evaluate, self.written, self.movable)
+        return mobility.ways(self.built, found, self.evaluate, self.written, self.movable)
 
     def by_numbers(self) -> Iterator[Handle]:
-        known = self.ways
         for grip, at in self.places:
-            name = _name(grip)
-            if grip.id in known.own:
-                yield Handle(grip.id, grip.path, at, "guess", f"{name}: drag to move")
-            elif grip.id in known.sizes:
-                yield Handle(grip.id, grip.path, at, "size", f"{name}: drag to change its size")
-            elif grip.id in known.whole:
-                yield Handle(grip.id, grip.path, at, "guess", f"{name}: drag to move the drawing")
+            if (way := self.ways.get(grip.id)) is not None:
+                moves, does = _DOES[way.by]
+                yield Handle(grip.id, grip.path, at, moves, f"{_name(grip)}: drag to {does}")
 
     def is_slide(self, handle: str) -> bool:
         """True for a point that moves only with everything else."""
-        known = self.ways
-        return handle in known.whole and handle not in known.own and handle not in known.sizes
+        return handle in self.ways and self.ways[handle].by == "whole"
 
     def slides(self, handle: str) -> bool:
         """Tells whether numbers of the text hold the whole drawing: often the solver puts it back anyway."""
-        directions = self.ways.whole[handle].directions
+        directions = self.ways[handle].directions
         if directions not in self._tried:
             self._tried[directions] = self._can_slide(directions)
         return self._tried[directions]
@@ -385,8 +358,7 @@ class _Hold:
     def _can_slide(self, directions: tuple[Vec, ...]) -> bool:
         """Tries it with one of the points that move along some directions: all of them move alike."""
         for grip, (x, y) in self.places:
-            way = self.ways.whole.get(grip.id)
-            if way is not None and way.directions == directions and self.is_slide(grip.id):
+            if self.is_slide(grip.id) and self.ways[grip.id].directions == directions:
                 dx, dy = (sum(each) * _PROBE for each in zip(*directions, strict=True))
                 try:
                     return bool(_pulled(self, grip, (x + dx, y + dy), STEP).edits)
@@ -397,11 +369,7 @@ class _Hold:
 
 @lru_cache(maxsize=4)
 def _hold(view: View) -> _Hold | None:
-    outcome = view.outcome
-    if outcome is None or outcome.built is None or outcome.evaluate is None:
-        return None
-    is_shown = outcome.status == "solved" and not view.is_stale
-    return _Hold(view, outcome, outcome.built, outcome.evaluate) if is_shown else None
+    return _Hold(**vars(view.solved), view=view) if view.solved is not None and view.solved.holds else None
 
 
 def handles(view: View) -> list[Handle]:
@@ -436,13 +404,13 @@ def drag(view: View, handle: str, to: Vec, step: float = STEP) -> Dragged:
     if found.moves != "param":
         return _pulled(hold, grip, to, step)
     shown, at, edits = turned(view, handle, to, step)
-    return Dragged(shown, at, view, grip, step, edits)
+    return Dragged(shown, at, lambda: edits)
 
 
 def _outermost(hold: _Hold, found: list[Handle]) -> list[Handle]:
     """Returns one handle for each place, those of outer things first, and far ones before near ones."""
     depth = {grip.id: grip.depth for grip in hold.grips.values()}
-    box = hold.outcome.model.root.box if hold.outcome.model is not None else None
+    box = hold.model.root.box
     middle = ((box.left + box.right) / 2, (box.bottom + box.top) / 2) if box is not None else (0.0, 0.0)
     kinds = ("guess", "size", "param")
 
@@ -473,16 +441,15 @@ def _pulled(hold: _Hold, grip: Grip, to: Vec, step: float) -> Dragged:
     """Returns the program with the point as near to a place as it can come. Unknowns without a number in the
     text move only if nothing else will do.
     """
-    known, evaluate = hold.ways, hold.evaluate
-    way = known.own.get(grip.id) or known.sizes.get(grip.id) or known.whole.get(grip.id)
+    way = hold.ways.get(grip.id)
     if way is None:
         raise CannotError("there is nothing to drag")
-    by_sizes = grip.id in known.sizes and grip.id not in known.own
-    sizes = frozenset(u for u in hold.written if by_sizes and u.kept and belongs(u, grip.thing))
-    more = [pull(hold.model, grip, way.directions, to, _WEIGHT)]
+    of_thing = (u for u in hold.written if u.kept and mobility.belongs(u, grip.thing))
+    sizes = frozenset(of_thing if way.by == "size" else ())
+    more = [mobility.pull(hold.built, grip, way.directions, to, _WEIGHT)]
     if (pin := hold.grips.get(way.pin or "")) is not None:  # a point that stays meanwhile
-        more.append(pull(hold.model, pin, AXES, pin.at(evaluate), None))
-    lowered = lower(replace(hold.model, constraints=[*hold.model.constraints, *more]))
+        more.append(mobility.pull(hold.built, pin, AXES, pin.at(hold.evaluate), None))
+    lowered = lower(replace(hold.built, constraints=[*hold.built.constraints, *more]))
 
     def off(found: tuple[Solution, Vec]) -> float:
         x, y = found[1][0] - to[0], found[1][1] - to[1]
@@ -501,7 +468,8 @@ def _pulled(hold: _Hold, grip: Grip, to: Vec, step: float) -> Dragged:
         shown = pipeline.redrawn(hold.outcome, lowered, solution)
     except TooLongError as reason:
         raise CannotError(str(reason)) from None
-    return Dragged(replace(hold.view, outcome=shown, drawn=shown), at, hold.view, grip, step)
+    dragged = replace(hold.view, outcome=shown, drawn=shown)
+    return Dragged(dragged, at, partial(_edits, hold, grip, at, step, dragged))
 
 
 def _solved(
@@ -510,7 +478,7 @@ def _solved(
     """Returns the nearest solution that changes only `loose` unknowns and the sizes to change, and the
     point's place. All is solved at once, since it all holds as it is. With sizes, positions only follow.
     """
-    problem, at = lowered.problem, values_at(lowered, hold.evaluate)
+    problem, at = lowered.problem, mobility.values_at(lowered, hold.evaluate)
     resized, said = _are(lowered, sizes), _are(lowered, hold.written) & ~problem.kept
     free = resized | (_are(lowered, loose) & ~problem.kept)
     flat = replace(
@@ -544,12 +512,10 @@ def _are(lowered: Lowered, unknowns: AbstractSet[Unknown]) -> NDArray[np.bool_]:
 # --- Writes it into the text.
 
 
-def _edits(view: View, dragged: Dragged) -> tuple[Edit, ...]:
-    """Returns the fewest and shortest numbers that place the point as shown."""
-    hold, shown = _hold(view), dragged.view.outcome
-    assert hold is not None
+def _edits(hold: _Hold, grip: Grip, at: Vec, step: float, dragged: View) -> tuple[Edit, ...]:
+    """Returns the fewest and shortest numbers that place a point as the dragged program shows it."""
+    shown = dragged.solved
     assert shown is not None
-    assert shown.evaluate is not None
     everything = [(g, v) for g in hold.editable if (v := g.valued(shown.evaluate)) is not None]
     changed = [
         (guess, after)
@@ -559,27 +525,26 @@ def _edits(view: View, dragged: Dragged) -> tuple[Edit, ...]:
     if not changed:
         raise CannotError("no number of the text would change by it")
     for numbers in (changed, everything):
-        for step in (dragged._step, _FINE):
-            texts = ((g, shortest(value, step / 2 / g.factor) + g.unit) for g, value in numbers)
+        for fineness in (step, _FINE):
+            texts = ((g, shortest(value, fineness / 2 / g.factor) + g.unit) for g, value in numbers)
             edits = tuple(Edit(g.span, text) for g, text in texts if text != g.span.text)
-            if edits and _comes_to(hold, edits, dragged, 2 * max(step, _FINE * 10)):
+            if edits and _comes_to(hold, edits, grip, at, shown.outcome, 2 * max(fineness, _FINE * 10)):
                 return edits
     raise CannotError("no numbers in the text would hold it there")
 
 
-def _comes_to(hold: _Hold, edits: tuple[Edit, ...], dragged: Dragged, tolerance: float) -> bool:
+def _comes_to(
+    hold: _Hold, edits: tuple[Edit, ...], grip: Grip, at: Vec, shown: Compiled, tolerance: float
+) -> bool:
     """Tells whether the edited text solves with the point as shown, and with no further errors."""
-    again, shown = _hold(edited(hold.view, edits, hasty())), dragged.view.outcome
-    if again is None or shown is None or (grip := again.grips.get(dragged._grip.id)) is None:
+    again = _hold(edited(hold.view, edits, hasty()))
+    if again is None or (there := again.grips.get(grip.id)) is None:
         return False
     known = {d.code for d in (*hold.outcome.errors, *shown.errors)}
     if not {d.code for d in again.outcome.errors} <= known:
         return False
-    if math.dist(grip.at(again.evaluate), dragged.at) <= tolerance:
+    if math.dist(there.at(again.evaluate), at) <= tolerance:
         return True
     # A drawing that the text does not place may move as a whole.
     is_same_shape = is_same(shown, again.outcome, slid=True, tolerance=tolerance)
     return is_same_shape and not hold.is_slide(grip.id)
-
-
-__all__ = ["MOST_HANDLES", "Dragged", "Handle", "drag", "grips", "handles", "is_somewhere"]

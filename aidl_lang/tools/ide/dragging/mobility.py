@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from collections.abc import Set as AbstractSet
 from dataclasses import field, replace
+from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -50,16 +51,11 @@ class Grip:
     thing: Geometry | Structure = field(repr=False)
     depth: int
 
-    @property
-    def is_frame(self) -> bool:
-        """True for the grip of a structure, which goes where its frame goes."""
-        return isinstance(self.thing, Structure)
-
-    @property
-    def frame(self) -> frozenset[Unknown]:
+    def may_move(self, written: AbstractSet[Unknown]) -> bool:
+        """Tells whether numbers of the text say where a structure is, which goes where its frame goes."""
         if not isinstance(self.thing, Structure):
-            return frozenset()
-        return frozenset(ex.unknowns([self.thing.frame.x, self.thing.frame.y]))
+            return True
+        return not written.isdisjoint(ex.unknowns([self.thing.frame.x, self.thing.frame.y]))
 
     def at(self, evaluate: Evaluator) -> Vec:
         return evaluate(self.x), evaluate(self.y)
@@ -146,24 +142,20 @@ _NOWHERE = Span(SourceFile("dragging", ""), 0, 0)
 
 @record()
 class Way:
-    """The motion of a point along one or two unit vectors; the point `pin` stays, lest everything move."""
+    """The motion of a point along one or two unit vectors.
 
+    by   `own` where a first guess moves it against others, `size` where a kept size of its own does; `whole`
+         where it moves with the whole drawing, by first guesses too
+    pin  a point that stays, lest everything move
+    """
+
+    by: str
     directions: tuple[Vec, ...]
     pin: str | None = None
 
 
-@record()
-class Ways:
-    """The ways of points, by their ids.
-
-    own    points that a first guess moves against others
-    sizes  points that a kept size of their own moves
-    whole  points that move with the whole drawing, by first guesses too
-    """
-
-    own: Mapping[str, Way] = field(default_factory=dict)
-    sizes: Mapping[str, Way] = field(default_factory=dict)
-    whole: Mapping[str, Way] = field(default_factory=dict)
+Ways: TypeAlias = dict[str, Way]
+"""The ways of points, by their ids."""
 
 
 def pull(model: Model, grip: Grip, directions: Sequence[Vec], to: Vec, weight: float | None) -> Constraint:
@@ -186,16 +178,11 @@ def ways(
     """Returns the ways of all points; `written` are the unknowns with a number in the text."""
     wishes = {grip: pull(model, grip, AXES, grip.at(evaluate), 1.0) for grip in grips}
     lowered = lower(replace(model, constraints=[*model.constraints, *wishes.values()]))
-    scene = _Scene(lowered, evaluate, wishes, written, movable)
-    own: dict[str, Way] = {}
-    sizes: dict[str, Way] = {}
-    whole: dict[str, Way] = {}
-    for part in scene.parts():
-        against, along = part.by_positions()
-        own |= against
-        whole |= along
-        sizes |= part.by_sizes()
-    return Ways(own, sizes, whole)
+    found: Ways = {}
+    for part in _Scene(lowered, evaluate, wishes, written, movable).parts():
+        part.by_positions(found)
+        part.by_sizes(found)
+    return found
 
 
 def movable(model: Model, evaluate: Evaluator, written: AbstractSet[Unknown]) -> frozenset[Unknown]:
@@ -280,24 +267,20 @@ class _Part:
             self.positions[self.free] = null
         self.everything = _null_space(jacobian)
 
-    def by_positions(self) -> tuple[dict[str, Way], dict[str, Way]]:
-        """Returns the points that move against most others, and those that move with them."""
+    def by_positions(self, found: Ways) -> None:
+        """Adds the points that move against most others, and those that move with them."""
         moved = self.velocity @ self.positions
-        world = _World(moved, self.others)
-        own: dict[str, Way] = {}
-        whole: dict[str, Way] = {}
+        world, pin = self._world(moved)
         for number, grip in enumerate(self.grips):
             if not (_moves(moved[number]) and self._is_written(moved[number])):
                 continue
-            if _moves(against := moved[number] - world.velocity):
-                own[grip.id] = Way(_directions(against), self._pin(world))
+            if _moves(against := moved[number] - world):
+                found[grip.id] = Way("own", _directions(against), pin)
             else:
-                whole[grip.id] = Way(_directions(moved[number]))
-        return own, whole
+                found[grip.id] = Way("whole", _directions(moved[number]))
 
-    def by_sizes(self) -> dict[str, Way]:
-        """Returns the points that move against most others if a size of their own thing changes."""
-        found: dict[str, Way] = {}
+    def by_sizes(self, found: Ways) -> None:
+        """Adds the points that move against most others if a size of their own thing changes."""
         for thing in dict.fromkeys(grip.thing for grip in self.grips):
             own = np.array([belongs(self.scene.unknowns[c], thing) for c in self.columns.tolist()])
             own &= ~self.free & self.written
@@ -305,15 +288,28 @@ class _Part:
                 continue
             motions = self.everything @ _null_space(self.everything[~self.free & ~own])
             moved = self.velocity @ motions
-            world = _World(moved, self.others)
+            world, pin = self._world(moved)
             for number, grip in enumerate(self.grips):
-                if grip.thing is thing and _moves(against := moved[number] - world.velocity):
-                    found[grip.id] = Way(_directions(against), self._pin(world))
-        return found
+                is_own = grip.id in found and found[grip.id].by == "own"
+                if grip.thing is thing and not is_own and _moves(against := moved[number] - world):
+                    found[grip.id] = Way("size", _directions(against), pin)
 
-    def _pin(self, world: _World) -> str | None:
-        """Returns a point that is to stay, if it could be drawn along."""
-        return self.grips[world.member].id if world.member is not None else None
+    def _world(self, moved: Floats) -> tuple[Floats, str | None]:
+        """Returns the velocity (2, d) of the largest set of points, of velocities (g, 2, d), that keep
+        together in all motions: it stays while others are dragged. With it comes one of them that is to stay,
+        if it could be drawn along.
+        """
+        still = np.abs(moved).max(axis=(1, 2), initial=0.0) <= _MOVES
+        most = self.others + int(still.sum())
+        velocity: Floats = np.zeros(moved.shape[1:])
+        pin = None
+        left = np.flatnonzero(~still)
+        while len(left) > most:
+            like = np.abs(moved[left] - moved[left[0]]).max(axis=(1, 2), initial=0.0) <= _MOVES
+            if int(like.sum()) > most:
+                most, velocity, pin = int(like.sum()), moved[left[0]], self.grips[left[0]].id
+            left = left[~like]
+        return velocity, pin
 
     def _is_written(self, moved: Floats) -> bool:
         """True if numbers of the text take part in the shortest motions of a point."""
@@ -321,28 +317,6 @@ class _Part:
 
     def _dense(self, rows: Ints) -> Floats:
         return np.asarray(self.scene.matrix.take(rows).dense(self.columns))
-
-
-class _World:
-    """The largest set of points that keep together in all motions: it stays while others are dragged.
-
-    velocity (2, d) of them all; `member` is one of them, if they move
-    """
-
-    def __init__(self, moved: Floats, others: int) -> None:
-        """`moved` are the velocities (g, 2, d); `others` is the number of points that none of these moves."""
-        left = np.arange(len(moved))
-        still = np.abs(moved).max(axis=(1, 2), initial=0.0) <= _MOVES
-        most = others + int(still.sum())
-        self.velocity: Floats = np.zeros(moved.shape[1:])
-        self.member: int | None = None
-        left = left[~still]
-        while len(left) > most:
-            like = np.abs(moved[left] - moved[left[0]]).max(axis=(1, 2), initial=0.0) <= _MOVES
-            if int(like.sum()) > most:
-                most, self.member = int(like.sum()), int(left[0])
-                self.velocity = moved[left[0]]
-            left = left[~like]
 
 
 def belongs(unknown: Unknown, thing: Geometry | Structure) -> bool:

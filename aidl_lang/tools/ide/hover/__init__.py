@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 
 from aidl_lang.checking.symbols import Symbol, SymbolKind
@@ -14,8 +14,6 @@ from aidl_lang.syntax import ast
 from aidl_lang.syntax.tables import Token, kind_of
 from aidl_lang.tools.ide.guesses import guesses
 from aidl_lang.tools.ide.hover.solved_values import (
-    Solved,
-    compared,
     constraint_lines,
     lines,
     number_text,
@@ -29,11 +27,13 @@ from aidl_lang.tools.ide.signatures import (
     label_of,
     of_callable,
     of_comment,
+    of_doc,
     of_parameter,
     of_public,
+    type_of,
 )
 from aidl_lang.tools.ide.site import Where, around, spot_at, token_at
-from aidl_lang.tools.ide.workspace import View
+from aidl_lang.tools.ide.workspace import Solved, View
 from aidl_lang.tools.reference.collect import Entry, reference
 from aidl_lang.tools.vocabulary import vocabulary
 
@@ -57,11 +57,9 @@ def of_word(view: View, offset: int) -> Hover | None:
     token = token_at(view, offset)
     if token is None:
         return None
-    span = view.span(token.start, token.end)
-    words = vocabulary()
-    if token.kind in words.comparisons:
+    if token.kind in vocabulary().comparisons:
         text = _compared(view, token)
-        return Hover(text, span) if text else None
+        return Hover(text, view.span(token.start, token.end)) if text else None
     word = token.text.strip("( \t")
     kind = kind_of(word)
     entry = reference().entries.get(kind or word)
@@ -71,9 +69,8 @@ def of_word(view: View, offset: int) -> Hover | None:
 
 
 def _keyword(entry: Entry) -> str:
-    example = fenced(entry.doc.example) if entry.doc.example else ""
     forms = fenced("\n".join(o.form for o in entry.overloads))
-    return joined([forms, entry.doc.line, entry.doc.text, example, _GUIDE])
+    return joined([forms, of_doc(entry.doc), _GUIDE])
 
 
 def _compared(view: View, token: Token) -> str:
@@ -85,7 +82,7 @@ def _compared(view: View, token: Token) -> str:
     if solved is None:
         return not_solved(view)
     sides = [(side.span.one_line, solved.values(side, path)) for side in node.operands]
-    return joined([stated_at(view, node, path), listed(compared(solved, sides))])
+    return joined([stated_at(view, node, path), listed(lines(solved, *sides))])
 
 
 def of_attribute(view: View, offset: int) -> Hover | None:
@@ -108,7 +105,11 @@ def of_number(view: View, start: int) -> Hover | None:
     node = path[-1]
     if not isinstance(node, ast.Number):
         return None
-    blocks = list(_converted(node))
+    blocks = []
+    if node.unit is not None:
+        factor, dimension = UNITS[node.unit]
+        worth = number_text(node.value * factor, dimension)
+        blocks.append(f"`{node.span.text}` = {worth}" if factor != 1.0 else f"{dimension}: {worth}")
     for guess in guesses(view):
         if guess.span.start <= start < guess.span.end and guess.solved is not None:
             what = "kept" if guess.is_kept else "a first guess"
@@ -119,16 +120,10 @@ def of_number(view: View, start: int) -> Hover | None:
     return Hover(joined(blocks), node.span) if blocks else None
 
 
-def _converted(node: ast.Number) -> Iterator[str]:
-    if node.unit is not None:
-        factor, dimension = UNITS[node.unit]
-        worth = number_text(node.value * factor, dimension)
-        yield f"`{node.span.text}` = {worth}" if factor != 1.0 else f"{dimension}: {worth}"
-
-
 # --- The values shown on hovering, as lists in Markdown, or the reason why there are none.
 
-_STATED = ast.ExpressionStatement | ast.Equation | ast.Prefer
+_MAY_HOLD = ast.ExpressionStatement | ast.Equation | ast.Prefer | ast.Comparison | ast.Call | ast.Membership
+_NEAREST = "*The constraints do not hold together: this is where the solver came nearest.*"
 
 
 def listed(told: Sequence[str]) -> str:
@@ -143,10 +138,7 @@ def not_solved(view: View) -> str:
 
 
 def failed(solved: Solved) -> str:
-    model = solved.outcome.model
-    if model is None or model.status == "solved":
-        return ""
-    return "*The constraints do not hold together: this is where the solver came nearest.*"
+    return "" if solved.holds else _NEAREST
 
 
 def stated_at(view: View, node: ast.Node, path: Sequence[ast.Node]) -> str:
@@ -155,8 +147,7 @@ def stated_at(view: View, node: ast.Node, path: Sequence[ast.Node]) -> str:
     if solved is None:
         return ""
     for each in reversed(path):
-        may_be_one = isinstance(each, _STATED | ast.Comparison | ast.Call | ast.Membership)
-        if may_be_one and (told := constraint_lines(solved, each.span)):
+        if isinstance(each, _MAY_HOLD) and (told := constraint_lines(solved, each.span)):
             return joined([*told, failed(solved)])
         if isinstance(each, ast.Block):
             break
@@ -171,8 +162,7 @@ _VALUES = frozenset(SymbolKind) - {
 
 
 def hover(view: View, offset: int) -> Hover | None:
-    spot = spot_at(view, offset)
-    if spot.where in (Where.COMMENT, Where.STRING):
+    if spot_at(view, offset).where in (Where.COMMENT, Where.STRING):
         return None
     token = token_at(view, offset)
     if token is not None and token.kind == "NUMBER":
@@ -185,17 +175,16 @@ def _of_name_at(view: View, offset: int) -> Hover | None:
     if mention is None:
         return None
     path = around(view.module, mention.span.start)
-    node = mention.node
+    node, symbol = mention.node, mention.symbol
     if isinstance(node, ast.Argument):
-        text = _of_named_argument(view, node, path, mention.symbol)
+        text = _of_named_argument(view, node, path, symbol)
     elif isinstance(node, ast.Call):
-        text = _of_call(view, node, path, mention.symbol)
+        text = _of_call(view, node, path, symbol)
     else:
-        symbol = mention.symbol
         blocks = [_headed(view, mention), _doc(symbol)]
         if symbol.kind in _VALUES:
             blocks.append(_values(view, mention, path))
-        elif mention.symbol.node is None:
+        elif symbol.node is None:
             blocks.append(of_public(symbol.name))
         text = joined(blocks)
     return Hover(text, mention.span) if text else None
@@ -217,52 +206,36 @@ def _headed(view: View, mention: Mention) -> str:
 
 
 def _doc(symbol: Symbol) -> str:
-    comments = [doc for node in symbol.nodes if (doc := getattr(node, "doc", None))]
-    if comments:
-        return of_comment(comments[0])
-    if symbol.node is None:
-        entry = reference().entries.get(symbol.name)
-        return joined([entry.doc.line, entry.doc.text]) if entry is not None and entry.sort == "word" else ""
-    return ""
+    comment = next((doc for node in symbol.nodes if (doc := getattr(node, "doc", None))), None)
+    if comment is not None:
+        return of_comment(comment)
+    entry = reference().entries.get(symbol.name) if symbol.node is None else None
+    return joined([entry.doc.line, entry.doc.text]) if entry is not None and entry.sort == "word" else ""
 
 
 def _values(view: View, mention: Mention, path: Sequence[ast.Node]) -> str:
     solved = solved_of(view)
     if solved is None:
         return not_solved(view)
-    node = _expression(mention)
-    if node is None:
+    node = mention.node
+    if isinstance(node, ast.Identifier):  # of a declaration: a name like it
+        node = ast.Name(node.text, span=node.span)
+    if not isinstance(node, ast.Name | ast.Member):
         return ""
     found = solved.values(node, _body_path(mention, path))
     if mention.symbol.kind is SymbolKind.LOOP:
         found = [replace(each, label="") for each in found]  # it would repeat the value
-    told = lines(solved, _shown_name(node), found)
-    if mention.symbol.kind is SymbolKind.PARAM and isinstance(mention.symbol.node, ast.Param):
+    told = lines(solved, (node.span.one_line, found))
+    if isinstance(mention.symbol.node, ast.Param):
         told = [line.replace(", exact (param)", ", param") for line in told]
     return joined([listed(told), _range(mention.symbol), failed(solved)])
-
-
-def _shown_name(node: ast.Expression) -> str:
-    return node.span.one_line if isinstance(node, ast.Member | ast.Index) else getattr(node, "text", "value")
-
-
-def _expression(mention: Mention) -> ast.Expression | None:
-    """Returns the expression to evaluate for a name: the name itself, or for a declaration a name like it."""
-    match mention.node:
-        case ast.Name() | ast.Member() as node:
-            return node
-        case ast.Identifier() as node:
-            return ast.Name(node.text, span=node.span)
-        case _:
-            return None
 
 
 def _body_path(mention: Mention, path: Sequence[ast.Node]) -> Sequence[ast.Node]:
     """Returns the nodes around a name for its readers: an array is outside the loop, a variable in a turn."""
     symbol = mention.symbol
     if symbol.is_array and mention.is_declaration:
-        loops = [n for n, node in enumerate(path) if isinstance(node, ast.For)]
-        return path[: loops[0]] if loops else path
+        return path[: next((n for n, node in enumerate(path) if isinstance(node, ast.For)), len(path))]
     if isinstance(mention.node, ast.Identifier) and isinstance(symbol.node, ast.For):
         loop = next((n for n, node in enumerate(path) if node is symbol.node), len(path) - 1)
         return [*path[: loop + 1], symbol.node.body]
@@ -295,8 +268,8 @@ def _of_named_argument(view: View, argument: ast.Argument, path: Sequence[ast.No
     signature = chosen(view, call) if call is not None else None
     if signature is None:
         return ""
-    kind = next((k for name, k, _ in signature.parameters if name == symbol.name), None)
     node = parameter_node(signature, symbol.name)
+    kind = type_of(signature, symbol.name)
     shown = node.span.one_line if node is not None else f"{symbol.name}: {kind}"
     head_line = fenced(f"{signature.name}(… {shown} …)")
     return joined([head_line, of_parameter(signature, symbol.name), _given(view, argument, path)])
@@ -312,8 +285,5 @@ def _given(view: View, argument: ast.Argument, path: Sequence[ast.Node]) -> str:
     name = ast.Name(made.name.text, span=made.name.span)
     field = ast.Member(name, argument.name, span=argument.name.span)
     found = solved.values(field, path[: path.index(made)])
-    told = lines(solved, f"{made.name.text}.{argument.name.text}", found)
+    told = lines(solved, (f"{made.name.text}.{argument.name.text}", found))
     return joined([listed(told), failed(solved)])
-
-
-__all__ = ["Hover", "hover"]

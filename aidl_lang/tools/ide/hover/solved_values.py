@@ -13,7 +13,7 @@ from aidl_lang.building.boxes import spelled_out
 from aidl_lang.building.calls import call
 from aidl_lang.building.evaluate import evaluate, iterate, turn_scope
 from aidl_lang.building.expression import Evaluator, Unknown
-from aidl_lang.building.model import Condition, Geometry, Model, Structure, own_geometry
+from aidl_lang.building.model import Condition, Geometry, Structure, own_geometry
 from aidl_lang.building.state import BuildingLimits, Env, Interpreter, LetBinding, Reach, Scope
 from aidl_lang.building.statements import EXECUTORS
 from aidl_lang.building.values import (
@@ -35,9 +35,8 @@ from aidl_lang.common.prose import counted, fixed
 from aidl_lang.common.records import record
 from aidl_lang.common.source import Span
 from aidl_lang.parser import depth_of
-from aidl_lang.pipeline import Compiled
 from aidl_lang.syntax import ast
-from aidl_lang.tools.ide.workspace import View
+from aidl_lang.tools.ide.workspace import Solved, View
 
 # --- The values of an expression in the solved model, one for each time it was built.
 #
@@ -65,13 +64,10 @@ class BuiltValue:
 
 
 @record(eq=False)
-class Solved:
+class SolvedText(Solved):
     """The outcome of a view's own text."""
 
     view: View
-    outcome: Compiled
-    built: Model
-    evaluate: Evaluator
 
     @cached_property
     def _known(self) -> frozenset[Unknown]:
@@ -79,7 +75,7 @@ class Solved:
 
     @cached_property
     def free(self) -> frozenset[str]:
-        return frozenset(self.outcome.model.mobility().free) if self.outcome.model else frozenset()
+        return frozenset(self.model.mobility().free)
 
     def values(self, node: ast.Expression, path: Sequence[ast.Node]) -> list[BuiltValue]:
         """Returns the first values of an expression; none with errors. `path` are the nodes around."""
@@ -139,8 +135,6 @@ class Solved:
                 for structure in root.walk():
                     if isinstance(structure.scope, Scope) and _is_made_by(structure, owner):
                         yield _below(root, structure.path), structure, structure.scope
-            case _:
-                return
 
     def _turns(self, env: Env, inside: Sequence[ast.Node]) -> Iterator[tuple[str, Env]]:
         """Yields the environments of a place in a body: one for each turn of the loops around it."""
@@ -168,16 +162,13 @@ class Solved:
 
     def moves(self, value: Num) -> bool | None:
         """Tells whether a number changes with the remaining motions; None if that is not known."""
-        model = self.outcome.model
-        if model is None:
-            return None
         by_path = {u.path: u for u in ex.unknowns([value.expression])}
-        for motion in model.ways:
+        for motion in self.model.ways:
             rates = {by_path[path]: rate for path, rate in motion.moves.items() if path in by_path}
             largest = max(map(abs, motion.moves.values()), default=0.0)
             if rates and largest and self._changes(value, rates, _STEP / largest):
                 return True
-        return False if len(model.ways) == (model.degrees or 0) else None
+        return False if len(self.model.ways) == (self.model.degrees or 0) else None
 
     def _changes(self, value: Num, rates: dict[Unknown, float], step: float) -> bool:
         solved = self.evaluate.values
@@ -188,12 +179,9 @@ class Solved:
         return abs(ends[0] - ends[1]) > 2 * _UNMOVED * _STEP
 
 
-def solved_of(view: View) -> Solved | None:
+def solved_of(view: View) -> SolvedText | None:
     """Returns the solved values of a view; None if its present text was not built and solved."""
-    outcome = view.outcome
-    if outcome is None or outcome.built is None or outcome.evaluate is None:
-        return None
-    return Solved(view, outcome, outcome.built, outcome.evaluate)
+    return SolvedText(**vars(view.solved), view=view) if view.solved is not None else None
 
 
 def _owner(path: Sequence[ast.Node]) -> int | None:
@@ -206,14 +194,12 @@ def _owner(path: Sequence[ast.Node]) -> int | None:
                 return None
             case ast.ForArguments() | ast.ArgumentBlock():
                 return None
-            case ast.Structure() | ast.ShapeDefinition() if inside is node.body:
+            case ast.Structure(parameters=parameters, body=body) if inside in (body, *(parameters or ())):
                 return number
-            case ast.Structure(parameters=parameters) if parameters is not None and inside in parameters:
+            case ast.ShapeDefinition(body=body) if inside is body:
                 return number
             case ast.Module():
                 return number
-            case _:
-                pass
     return None
 
 
@@ -247,15 +233,14 @@ def _with_lets(env: Env, block: ast.Block) -> Env:
             case ast.Let(name=name, value=value) | ast.Assign(name=name, indices=(), value=value):
                 if env.scope.find(name.text) is None:
                     scope.values[name.text] = LetBinding(value, scope)
-            case _:
-                pass
     return Env(scope, env.here, env.reach)
 
 
 def spelled(*values: Value) -> list[Value]:
     """Spells out the sides of boxes in values, as one comparison has them."""
-    numbers = [n for value in values for n in _numbers(value)]
-    known = iter(spelled_out(*(n.expression for n in numbers)))
+    pairs = ((v.x, v.y) if isinstance(v, PointVal) else (v,) for v in values)
+    numbers = (n.expression for pair in pairs for n in pair if isinstance(n, Num))
+    known = iter(spelled_out(*numbers))
 
     def made(number: Num) -> Num:
         return Num(next(known), number.dimension, number.status)
@@ -264,16 +249,6 @@ def spelled(*values: Value) -> list[Value]:
         PointVal(made(v.x), made(v.y)) if isinstance(v, PointVal) else made(v) if isinstance(v, Num) else v
         for v in values
     ]
-
-
-def _numbers(value: Value) -> list[Num]:
-    match value:
-        case Num():
-            return [value]
-        case PointVal(x, y):
-            return [x, y]
-        case _:
-            return []
 
 
 def items_of(value: Value) -> list[tuple[str, Value]] | None:
@@ -311,17 +286,10 @@ def number_text(value: float, dimension: MaybeDimension) -> str:
     return fixed(value, DECIMALS) + _UNITS.get(dimension, f" {dimension}")
 
 
-def lines(solved: Solved, name: str, found: list[BuiltValue]) -> list[str]:
-    """Returns a line with the value for each instance or turn."""
-    told: list[str] = []
-    for each in found:
-        head = f"{each.label}: " if each.label else ""
-        told += [head + line for line in _lines(solved, name, each.value, each.env)]
-    return told
-
-
-def compared(solved: Solved, sides: list[tuple[str, list[BuiltValue]]]) -> list[str]:
-    """Returns lines for the sides of a comparison, which read the boxes in it together."""
+def lines(solved: SolvedText, *sides: tuple[str, list[BuiltValue]]) -> list[str]:
+    """Returns a line with the value for each instance or turn; for the sides of a comparison, which read the
+    boxes in it together, one for each.
+    """
     told: list[str] = []
     for row in zip(*(found for _, found in sides), strict=False):
         head = f"{row[0].label}: " if row[0].label else ""
@@ -331,17 +299,14 @@ def compared(solved: Solved, sides: list[tuple[str, list[BuiltValue]]]) -> list[
     return told
 
 
-def _lines(solved: Solved, name: str, value: Value, env: Env) -> Iterator[str]:
+def _lines(solved: SolvedText, name: str, value: Value, env: Env) -> Iterator[str]:
     value = spelled(value)[0]
     match value:
-        case Num():
-            text = _number(solved, value)
-            if text is not None:
-                yield f"{name} = {text}"
-        case PointVal():
-            text = _point(solved, value)
-            if text is not None:
-                yield f"{name} = {text}{_frame(env)}"
+        case Num() if (number := solved.number(value)) is not None:
+            said = (number_text(number, value.dimension), standing(solved, value))
+            yield f"{name} = {', '.join(filter(None, said))}"
+        case PointVal() if (text := _point(solved, value)) is not None:
+            yield f"{name} = {text}" + (f" (in {env.here.name})" if env.here.parent is not None else "")
         case Geometry():
             yield from _geometry(solved, name, value, env)
         case Structure():
@@ -356,18 +321,9 @@ def _lines(solved: Solved, name: str, value: Value, env: Env) -> Iterator[str]:
                 yield from _lines(solved, f"{name}{index}", item, env)
             if len(items) > _MOST_ITEMS:
                 yield "…"
-        case _:
-            pass
 
 
-def _number(solved: Solved, value: Num) -> str | None:
-    number = solved.number(value)
-    if number is None:
-        return None
-    return ", ".join(filter(None, (number_text(number, value.dimension), standing(solved, value))))
-
-
-def standing(solved: Solved, value: Num) -> str:
+def standing(solved: SolvedText, value: Num) -> str:
     """Returns how far a number may change: `free`, `kept`, `solved`, `exact`; "" if constant or unknown."""
     unknowns = list(ex.unknowns([value.expression]))
     changing = [u for u in unknowns if not u.exact and u in solved.evaluate.values]
@@ -387,16 +343,14 @@ def standing(solved: Solved, value: Num) -> str:
     return "" if moves is None else "free" if moves else "solved"
 
 
-def _of_one(solved: Solved, unknown: Unknown) -> str:
+def _of_one(solved: SolvedText, unknown: Unknown) -> str:
     if unknown.kept:
-        model = solved.outcome.model
-        changed = {c.path: c for c in model.changed} if model is not None else {}
-        change = changed.get(unknown.path)
+        change = next((c for c in reversed(solved.model.changed) if c.path == unknown.path), None)
         return "kept" if change is None else f"had to change from {fixed(change.written, DECIMALS)}"
     return "free" if unknown.path in solved.free else "solved"
 
 
-def _point(solved: Solved, value: PointVal) -> str | None:
+def _point(solved: SolvedText, value: PointVal) -> str | None:
     x, y = solved.number(value.x), solved.number(value.y)
     if x is None or y is None:
         return None
@@ -405,14 +359,10 @@ def _point(solved: Solved, value: PointVal) -> str | None:
     return f"({fixed(x, DECIMALS)}, {fixed(y, DECIMALS)})" + (f", {how}" if how else "")
 
 
-def _frame(env: Env) -> str:
-    return f" (in {env.here.name})" if env.here.parent is not None else ""
-
-
-def _geometry(solved: Solved, name: str, geometry: Geometry, env: Env) -> Iterator[str]:
+def _geometry(solved: SolvedText, name: str, geometry: Geometry, env: Env) -> Iterator[str]:
     primitive = PRIMITIVES.get(geometry.type)
     for field in primitive.shown if primitive is not None else geometry.arguments:
-        value = solved.read(_member(geometry, field), _named(env, geometry))
+        value = _field(solved, geometry, field, env)
         if isinstance(value, Num | PointVal):
             yield from _lines(solved, f"{name}.{field}", value, env)
     if geometry.is_compound and (size := _box_size(solved, geometry, env)) is not None:
@@ -422,22 +372,16 @@ def _geometry(solved: Solved, name: str, geometry: Geometry, env: Env) -> Iterat
 _SUBJECT = "subject"
 
 
-def _member(geometry: Geometry, field: str) -> ast.Member:
-    """Returns `subject.field`; `_named` replaces the subject."""
-    span = geometry.span
-    assert span is not None or geometry.owner.span is not None
-    at = span or geometry.owner.span
+def _field(solved: SolvedText, geometry: Geometry, field: str, env: Env) -> Value | None:
+    at = geometry.span or geometry.owner.span
     assert at is not None
-    return ast.Member(ast.Name(_SUBJECT, span=at), ast.Identifier(field, span=at), span=at)
-
-
-def _named(env: Env, geometry: Geometry) -> Env:
     scope = Scope(env.scope, turn=True)
     scope.values[_SUBJECT] = geometry
-    return Env(scope, env.here, env.reach)
+    node = ast.Member(ast.Name(_SUBJECT, span=at), ast.Identifier(field, span=at), span=at)
+    return solved.read(node, Env(scope, env.here, env.reach))
 
 
-def _box_size(solved: Solved, thing: Geometry, env: Env) -> str | None:
+def _box_size(solved: SolvedText, thing: Geometry, env: Env) -> str | None:
     box = boxes.box_of(thing, env.here)
     sides = [v for side in ("width", "height") if box is not None and (v := box.field(side)) is not None]
     numbers = [solved.number(side) for side in spelled(*sides) if isinstance(side, Num)]
@@ -446,10 +390,9 @@ def _box_size(solved: Solved, thing: Geometry, env: Env) -> str | None:
     return f"{fixed(numbers[0] or 0.0, DECIMALS)} × {fixed(numbers[1] or 0.0, DECIMALS)} mm"
 
 
-def _structure(solved: Solved, name: str, structure: Structure) -> Iterator[str]:
-    model = solved.outcome.model
-    found = model.root.find(structure.path) if model is not None else None
-    if model is None or found is None:
+def _structure(solved: SolvedText, name: str, structure: Structure) -> Iterator[str]:
+    found = solved.model.root.find(structure.path)
+    if found is None:
         return
     if found.box is not None:
         box = found.box
@@ -459,7 +402,7 @@ def _structure(solved: Solved, name: str, structure: Structure) -> Iterator[str]
         yield f"{name}: {found.kind}, {size}, {across}, {up}"
     else:
         yield f"{name}: {found.kind}, nothing drawn"
-    count, state = model.mobility().of(found)
+    count, state = solved.model.mobility().of(found)
     degrees = "" if count is None else f"{counted(count, 'degree')} of freedom"
     said = ", ".join(filter(None, (_STATES.get(state, ""), degrees)))
     if said:
@@ -468,8 +411,7 @@ def _structure(solved: Solved, name: str, structure: Structure) -> Iterator[str]
 
 def constraint_lines(solved: Solved, span: Span) -> list[str]:
     """Tells how well the constraint at a place holds; for one in a loop, in how many turns."""
-    model = solved.outcome.model
-    reports = [r for r in model.constraints if r.span == span] if model is not None else []
+    reports = [r for r in solved.model.constraints if r.span == span]
     if not reports:
         return []
     wrong = [abs(r.residual) for r in reports if not r.satisfied]

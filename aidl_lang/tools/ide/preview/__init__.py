@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import defaultdict
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 
 from aidl_lang.building.expression import Evaluator, Expression, Unknown, add, sub
@@ -23,7 +23,8 @@ from aidl_lang.geometry.drawing import Drawing
 from aidl_lang.geometry.solved import Motion, SolvedGeometry, SolvedStructure
 from aidl_lang.pipeline import Compiled, Settings
 from aidl_lang.solver.hierarchy import Memory
-from aidl_lang.tools.ide.dragging import Handle, grips, handles, is_somewhere
+from aidl_lang.tools.ide.dragging import Handle
+from aidl_lang.tools.ide.dragging.mobility import grips, is_somewhere
 from aidl_lang.tools.ide.preview.elements import (
     FREEDOM,
     LAYERS,
@@ -33,15 +34,15 @@ from aidl_lang.tools.ide.preview.elements import (
     Preview,
     Turn,
     Way,
-    Writer,
     box_of,
+    conflicts,
     curves_of,
     elements,
-    elements_at,
     point_of,
+    problems,
+    sliders,
 )
-from aidl_lang.tools.ide.preview.sliders import conflicts, problems, set_knob, sliders, worked_out
-from aidl_lang.tools.ide.workspace import SETTINGS, View, hasty, run
+from aidl_lang.tools.ide.workspace import SETTINGS, Solved, View, hasty, run, solved
 
 # --- The remaining motions as arrows and arcs on the drawing.
 #
@@ -64,15 +65,12 @@ _SLOW = 1e-3
 """Part of the greatest speed below which a point counts as still."""
 
 
-def ways(outcome: Compiled, elements: Elements) -> Iterator[Way]:
+def ways(solved: Solved, elements: Elements) -> Iterator[Way]:
     """Yields the remaining motions of a solved model."""
-    model = outcome.model
-    if model is None or outcome.built is None or outcome.evaluate is None or outcome.drawing is None:
-        return
-    motions = model.motions[:MOST]
+    motions = solved.model.motions[:MOST]
     if not motions:
         return
-    flow = _Flow(outcome.built, outcome.evaluate, outcome.drawing.size)
+    flow = _Flow(solved.built, solved.evaluate, solved.drawing.size)
     for motion in motions:
         things = list(_things(flow, motion, elements))
         fastest = max((math.hypot(*v) for thing in things for v in thing.velocities), default=0.0)
@@ -268,9 +266,7 @@ def svg_of(outcome: Compiled, elements: Elements, show: Collection[str] = ()) ->
     """Returns the SVG of a drawing with some of LAYERS over it."""
     assert outcome.model is not None
     assert outcome.drawing is not None
-    options = Options(frozenset(show) - {_DIMENSIONS}, dimension=_DIMENSIONS in show)
-    job = Job(outcome.model, outcome.drawing, options=options)
-    painted = picture(job)
+    painted = picture(Job(outcome.model, outcome.drawing, options=layered(show)))
     groups = tuple(_numbered(group, elements) for group in painted.groups)
     text = to_svg(replace(painted, groups=groups))
     assert text.endswith(_END)
@@ -278,11 +274,15 @@ def svg_of(outcome: Compiled, elements: Elements, show: Collection[str] = ()) ->
     return text.removesuffix(_END) + "".join(hit.svg for hit in hits(outcome.drawing, elements)) + _END
 
 
+def layered(show: Collection[str]) -> Options:
+    """Returns the options for a picture with some of LAYERS over it."""
+    return Options(frozenset(LAYERS).intersection(show) - {_DIMENSIONS}, dimension=_DIMENSIONS in show)
+
+
 def _numbered(group: Group, elements: Elements) -> Group:
     number = elements.number.get(group.attributes.get("data-path", ""))
-    if number is None:
-        return group
-    return replace(group, attributes={**group.attributes, "data-element": str(number)})
+    more = {} if number is None else {"data-element": str(number)}
+    return replace(group, attributes={**group.attributes, **more})
 
 
 @record()
@@ -309,9 +309,11 @@ def hits(drawing: Drawing, elements: Elements) -> Iterator[PointedShape]:
         checkpoint()
         of_body[_body_of(drawn, bodies)].append((number, drawn))
     for members in of_body:
-        yield from _large_first(members, lambda k, drawn: _area(k, drawn, drawing))
-        yield from _large_first(members, lambda k, drawn: _lines(k, drawn, elements))
-        yield from _large_first(members, lambda k, drawn: _drawn_dot(k, drawn, POINT * drawing.size))
+        areas = [_area(number, drawn, drawing) for number, drawn in members]
+        lines = [_lines(number, drawn, elements) for number, drawn in members]
+        dots = [_dot(number, drawn, POINT * drawing.size) for number, drawn in members]
+        for found in (areas, lines, dots):
+            yield from sorted(filter(None, found), key=lambda hit: -hit.extent)
 
 
 def _body_of(drawn: DrawnElement, bodies: Mapping[str, int]) -> int:
@@ -322,13 +324,6 @@ def _body_of(drawn: DrawnElement, bodies: Mapping[str, int]) -> int:
             return bodies[path]
         path = path.rpartition(".")[0]
     return len(bodies)
-
-
-def _large_first(
-    members: Iterable[tuple[int, DrawnElement]], shape: Callable[[int, DrawnElement], PointedShape | None]
-) -> list[PointedShape]:
-    found = (hit for number, drawn in members if (hit := shape(number, drawn)) is not None)
-    return sorted(found, key=lambda hit: -hit.extent)
 
 
 def _area(number: int, drawn: DrawnElement, drawing: Drawing) -> PointedShape | None:
@@ -352,14 +347,12 @@ def _lines(number: int, drawn: DrawnElement, elements: Elements) -> PointedShape
     return PointedShape(number, open_path(pieces), extent(pieces)) if pieces else None
 
 
-def _drawn_dot(number: int, drawn: DrawnElement, radius: float) -> PointedShape | None:
+def _dot(number: int, drawn: DrawnElement, radius: float) -> PointedShape | None:
     at = point_of(drawn.model) if isinstance(drawn.model, SolvedGeometry) else None
     return None if at is None else PointedShape(number, open_path([Circle(at, radius)]), radius)
 
 
 # --- Makes the preview of a view: the picture and the data beside it.
-
-_NOWHERE = (0.0, 0.0, 0.0, 0.0)
 
 
 def preview(
@@ -368,14 +361,23 @@ def preview(
     """Returns the preview of a program that was run, with some of LAYERS over it, and FREEDOM if wanted.
 
     A program that does not draw shows the last one that did, and its own problems. What can be dragged takes
-    longer to find out than all the rest (see `with_handles`): here are those that are `known` from another
+    longer to find out than all the rest (see `handles`): here are those that are `known` from another
     picture of it, where they are now.
     """
     assert view.outcome is not None, "the view was not run"
     found = elements(view)
-    drawn = view.drawn
-    has_picture = drawn is not None and _is_anything_drawn(drawn)
-    svg, unpainted = _painted(drawn, found, show) if drawn is not None and has_picture else (None, ())
+    drawn = solved(view.drawn)
+    has_picture = drawn is not None and bool(
+        drawn.drawing.bodies or drawn.drawing.strokes or drawn.model.root.box
+    )
+    svg: str | None = None
+    unpainted: tuple[Diagnostic, ...] = ()
+    if drawn is not None and has_picture:
+        try:
+            with within(drawn.outcome.limit, "painting"):
+                svg = svg_of(drawn.outcome, found, show)
+        except TooLongError as reason:
+            unpainted = (reason.diagnostic,)
     # How a program stands: one that solved may still be `wrong`, as when an `assert` fails.
     is_wrong = view.outcome.status == "solved" and bool(view.outcome.errors)
     return Preview(
@@ -384,45 +386,24 @@ def preview(
         tried=tried,
         seconds=sum(view.outcome.timings.values()),
         svg=svg,
-        box=drawn.drawing.box if drawn is not None and drawn.drawing is not None else _NOWHERE,
+        box=drawn.drawing.box if drawn is not None else (0.0, 0.0, 0.0, 0.0),
         elements=found.values,
         knobs=tuple(sliders(view)),
         handles=tuple(_moved(view, known)),
         problems=tuple(problems(view, found, unpainted, tried=tried)),
         conflicts=tuple(conflicts(view, found)),
-        motions=tuple(ways(view.outcome, found)) if FREEDOM in show and not view.is_stale else (),
-        degrees=view.outcome.model.degrees if view.outcome.model is not None else None,
+        motions=tuple(ways(view.solved, found)) if FREEDOM in show and view.solved is not None else (),
+        degrees=view.solved.model.degrees if view.solved is not None else None,
     )
 
 
-def _painted(
-    drawn: Compiled, found: Elements, show: Collection[str]
-) -> tuple[str | None, tuple[Diagnostic, ...]]:
-    try:
-        with within(drawn.limit, "painting"):
-            return svg_of(drawn, found, set(show) & set(LAYERS)), ()
-    except TooLongError as reason:
-        return None, (reason.diagnostic,)
-
-
-def with_handles(made: Preview, view: View) -> Preview:
-    """Returns the preview with all handles. Raises Cancelled as `run` does."""
-    return replace(made, handles=tuple(handles(view)))
-
-
 def _moved(view: View, known: Iterable[Handle]) -> Iterator[Handle]:
-    outcome, wanted = view.outcome, {handle.id: handle for handle in known}
-    if not wanted or view.is_stale or outcome is None or outcome.built is None or outcome.evaluate is None:
+    solved, wanted = view.solved, {handle.id: handle for handle in known}
+    if solved is None or not wanted:
         return
-    for grip in grips(outcome.built):
-        if grip.id in wanted and is_somewhere(at := grip.at(outcome.evaluate)):
+    for grip in grips(solved.built):
+        if grip.id in wanted and is_somewhere(at := grip.at(solved.evaluate)):
             yield replace(wanted[grip.id], at=at)
-
-
-def _is_anything_drawn(outcome: Compiled) -> bool:
-    if outcome.model is None or outcome.drawing is None:
-        return False
-    return bool(outcome.drawing.bodies or outcome.drawing.strokes or outcome.model.root.box)
 
 
 def tried(
@@ -436,18 +417,3 @@ def tried(
     """Returns the view with other params; failures are explained if what changes them `rests`."""
     how = settings if rests else hasty(settings)
     return run(view, view, memory, {**(view.params or {}), **knobs}, how)
-
-
-# --- The preview beside the text: the drawing with its places in the text, sliders, problems.
-
-__all__ = [
-    "LAYERS",
-    "Preview",
-    "Writer",
-    "elements_at",
-    "preview",
-    "set_knob",
-    "tried",
-    "with_handles",
-    "worked_out",
-]

@@ -1,22 +1,28 @@
-"""The data of a preview, its JSON (`pane/protocol.d.ts`), and the numbered elements of a drawing."""
+"""The data of a preview and its JSON (`pane/protocol.d.ts`): numbered elements, sliders, problems."""
 
 from __future__ import annotations
 
 import math
+import re
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import fields, is_dataclass, replace
 from pathlib import Path
 from typing import Any, TypeAlias
 
-from aidl_lang.common.diagnostics import Fix
+from aidl_lang.building.model import Knob
+from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix
 from aidl_lang.common.prose import rounded, short
 from aidl_lang.common.records import record
 from aidl_lang.common.source import SourceFile, Span
-from aidl_lang.geometry.curves import Arc, Bounds, Circle, Ellipse, Line, Piece, Vec, bounds, union_bounds
-from aidl_lang.geometry.solved import ConstraintReport, SolvedGeometry, SolvedModel, SolvedStructure
+from aidl_lang.geometry.curves import Arc, Bounds, Circle, Ellipse, Line, Piece, Vec
+from aidl_lang.geometry.solved import Box, ConstraintReport, SolvedGeometry, SolvedStructure
+from aidl_lang.syntax import ast
+from aidl_lang.tools.agents import workspace
+from aidl_lang.tools.agents.workspace import refusal
+from aidl_lang.tools.ends import is_whole
 from aidl_lang.tools.ide.dragging import Handle
-from aidl_lang.tools.ide.workspace import Positions, View
+from aidl_lang.tools.ide.workspace import Positions, View, edited, hasty
 
 # --- The data of a preview. Coordinates in mm in the frame of the root, y upwards; places are spans.
 
@@ -170,11 +176,9 @@ class Writer:
 
     def range(self, span: Span) -> Json:
         positions = self.positions(span.source)
-        start, end = (positions.position(offset) for offset in (span.start, span.end))
-        return {
-            "start": {"line": start[0], "character": start[1]},
-            "end": {"line": end[0], "character": end[1]},
-        }
+        ends = (positions.position(offset) for offset in (span.start, span.end))
+        start, end = ({"line": line, "character": character} for line, character in ends)
+        return {"start": start, "end": end}
 
     def positions(self, source: SourceFile) -> Positions:
         if source not in self._positions:
@@ -221,48 +225,33 @@ class Places:
         self._view = view
         self._now = {module.source.name: module.source for module in view.program.resolution.modules}
         self._now[view.source.name] = view.source
-        self._shifts: dict[SourceFile, _Shift | None] = {}
+        self._kept: dict[SourceFile, tuple[int, int]] = {}
 
     def now(self, span: Span | None) -> Span | None:
         """Returns the present place; None in the library, or if an edit has changed it."""
-        if span is None or self._view.is_library(span.source):
+        if span is None or self._view.is_library(span.source) or span.source.name not in self._now:
             return None
-        source = span.source
-        if source not in self._shifts:
-            current = self._now.get(source.name)
-            self._shifts[source] = None if current is None else _Shift(source, current)
-        shift = self._shifts[source]
-        return None if shift is None else shift(span)
+        before, after = span.source, self._now[span.source.name]
+        if before not in self._kept:
+            self._kept[before] = _kept(before.text, after.text)
+        same, rest = self._kept[before]
+
+        def moved(offset: int, *, stays: bool) -> int | None:
+            if stays:
+                return offset
+            return None if offset < rest else offset + len(after.text) - len(before.text)
+
+        start = moved(span.start, stays=span.start < same or span.start == same < rest)
+        end = moved(span.end, stays=span.end <= same)
+        return None if start is None or end is None or start > end else Span(after, start, end)
 
 
-class _Shift:
-    """Converts offsets between two texts that differ in one place."""
-
-    def __init__(self, before: SourceFile, after: SourceFile) -> None:
-        self.before, self.after = before, after
-        if before.text == after.text:
-            self.same = self.rest = len(before.text)
-            return
-        # Offsets up to `same` stay; those from `rest` on count from the end.
-        one, other = before.text, after.text
-        self.same = alike(one, other)
-        self.rest = len(one) - alike(one[self.same :][::-1], other[self.same :][::-1])
-
-    def __call__(self, span: Span) -> Span | None:
-        start, end = self._start(span.start), self._end(span.end)
-        return None if start is None or end is None or start > end else Span(self.after, start, end)
-
-    def _start(self, offset: int) -> int | None:
-        if offset < self.same or offset == self.same < self.rest:
-            return offset
-        return self._from_end(offset)
-
-    def _end(self, offset: int) -> int | None:
-        return offset if offset <= self.same else self._from_end(offset)
-
-    def _from_end(self, offset: int) -> int | None:
-        """Returns None for an offset in the changed text."""
-        return None if offset < self.rest else offset + len(self.after.text) - len(self.before.text)
+def _kept(before: str, after: str) -> tuple[int, int]:
+    """Returns the offset up to which two texts are the same, and that from which they are so again."""
+    if before == after:
+        return len(before), len(before)
+    same = alike(before, after)
+    return same, len(before) - alike(before[same:][::-1], after[same:][::-1])
 
 
 def alike(one: Sequence[object], other: Sequence[object]) -> int:
@@ -295,10 +284,9 @@ class Elements:
         self.number: Mapping[str, int] = {
             each.element.path: k for k, each in reversed(list(enumerate(self.drawn)))
         }
-        self._of_span: dict[tuple[SourceFile, int, int], list[int]] = defaultdict(list)
+        self._of_span: dict[Span | None, list[int]] = defaultdict(list)
         for k, element in enumerate(self.values):
-            if (span := element.span) is not None:
-                self._of_span[span.source, span.start, span.end].append(k)
+            self._of_span[element.span].append(k)
 
     def near(self, path: str) -> int | None:
         """Returns the element at a path, or the innermost one around it."""
@@ -314,63 +302,45 @@ class Elements:
 
     def written_at(self, span: Span) -> list[int]:
         """Returns the elements written in exactly this place, including copies and turns of loops."""
-        return list(self._of_span.get((span.source, span.start, span.end), ()))
-
-    def around(self, span: Span) -> list[int]:
-        """Returns the elements of the smallest place that contains this one."""
-        places = [
-            (end - start, numbers)
-            for (source, start, end), numbers in self._of_span.items()
-            if source is span.source and start <= span.start and span.end <= end
-        ]
-        return list(min(places, key=lambda place: place[0])[1]) if places else []
+        return self._of_span.get(span, [])
 
 
 def elements(view: View) -> Elements:
     """Returns the elements in the picture of a view; none without a picture."""
     if view.drawn is None or view.drawn.model is None:
         return Elements(())
-    return Elements(_Reading(view).all(view.drawn.model))
+    return Elements(_of_structure(view.drawn.model.root, Places(view), None))
 
 
-class _Reading:
-    def __init__(self, view: View) -> None:
-        self.places = Places(view)
+def _of_structure(structure: SolvedStructure, places: Places, around: Span | None) -> Iterator[DrawnElement]:
+    span = places.now(structure.span) or around
+    about = ", ".join(filter(None, (structure.kind, _extent(structure))))
+    element = Element(structure.path, "structure", structure.kind, span, about)
+    yield DrawnElement(element, structure, structure)
+    for geometry in structure.drawn:
+        is_one = geometry.type in ("glyphs", "traced") or sum(1 for _ in geometry.walk()) > MOST_PARTS + 1
+        parts = () if is_one else geometry.parts
+        yield from _of_part(geometry, structure, places, places.now(geometry.span) or span, parts)
+    for child in structure.structures:
+        yield from _of_structure(child, places, span)
 
-    def all(self, model: SolvedModel) -> Iterator[DrawnElement]:
-        return self._structure(model.root, None)
 
-    def _structure(self, structure: SolvedStructure, around: Span | None) -> Iterator[DrawnElement]:
-        span = self.places.now(structure.span) or around
-        about = ", ".join(filter(None, (structure.kind, _extent(structure))))
-        element = Element(structure.path, "structure", structure.kind, span, about)
-        yield DrawnElement(element, structure, structure)
-        for geometry in structure.drawn:
-            yield from self._geometry(geometry, structure, span)
-        for child in structure.structures:
-            yield from self._structure(child, span)
-
-    def _geometry(
-        self, geometry: SolvedGeometry, owner: SolvedStructure, around: Span | None
-    ) -> Iterator[DrawnElement]:
-        span = self.places.now(geometry.span) or around
-        element = Element(geometry.path, "geometry", geometry.type, span, _of_geometry(geometry))
-        yield DrawnElement(element, geometry, owner)
-        if geometry.type in ("glyphs", "traced") or sum(1 for _ in geometry.walk()) > MOST_PARTS + 1:
-            return
-        for part in geometry.parts:
-            yield from self._part(part, owner, span)
-
-    def _part(
-        self, part: SolvedGeometry, owner: SolvedStructure, around: Span | None
-    ) -> Iterator[DrawnElement]:
-        span = self.places.now(part.span)
-        if span is None or (around is not None and _is_value_of(span, around)):
-            span = around  # the statement, in place of the call in it
-        element = Element(part.path, "geometry", part.type, span, _of_geometry(part))
-        yield DrawnElement(element, part, owner)
-        for inner in part.parts:
-            yield from self._part(inner, owner, span)
+def _of_part(
+    part: SolvedGeometry,
+    owner: SolvedStructure,
+    places: Places,
+    span: Span | None,
+    parts: Sequence[SolvedGeometry],
+) -> Iterator[DrawnElement]:
+    """Yields a geometry that is written at a place, and its parts, as far as they are told apart."""
+    kind = f"construction {part.type}" if part.construction else part.type
+    about = ", ".join(filter(None, (kind.replace("_", " "), _sizes(part))))
+    yield DrawnElement(Element(part.path, "geometry", part.type, span, about), part, owner)
+    for inner in parts:
+        place = places.now(inner.span)
+        if place is None or (span is not None and _is_value_of(place, span)):
+            place = span  # the statement, in place of the call in it
+        yield from _of_part(inner, owner, places, place, inner.parts)
 
 
 def _is_value_of(span: Span, statement: Span) -> bool:
@@ -395,18 +365,8 @@ def point_of(geometry: SolvedGeometry) -> Vec | None:
 
 def box_of(thing: SolvedStructure | SolvedGeometry) -> Bounds | None:
     """Returns the box of a structure, or of the curves of a geometry; None without one in finite numbers."""
-    if isinstance(thing, SolvedStructure):
-        own = thing.box
-        box = None if own is None else (own.left, own.bottom, own.right, own.top)
-    else:
-        boxes = [bounds(curve) for curve in curves_of(thing)]
-        box = union_bounds(boxes) if boxes else None
-    return box if box is not None and all(map(math.isfinite, box)) else None
-
-
-def _of_geometry(geometry: SolvedGeometry) -> str:
-    kind = f"construction {geometry.type}" if geometry.construction else geometry.type
-    return ", ".join(filter(None, (kind.replace("_", " "), _sizes(geometry))))
+    box = thing.box if isinstance(thing, SolvedStructure) else Box.around(curves_of(thing), ())
+    return box.bounds if box is not None and all(map(math.isfinite, box.bounds)) else None
 
 
 def _sizes(geometry: SolvedGeometry) -> str:
@@ -435,22 +395,178 @@ def _mm(value: float) -> str:
     return short(value, 3) if math.isfinite(value) else "?"
 
 
-def elements_at(view: View, offset: int) -> list[int]:
-    """Returns the elements that the text at an offset defines or constrains."""
-    found, place = elements(view), view.span(offset, offset)
-    numbers = found.around(place)
-    if any(found.values[k].kind == "geometry" for k in numbers):
-        return numbers  # a part shared with other geometry is a constraint, too
-    return _constrained(view, found, place) or numbers
+# --- What stands beside a drawing: the `param`s of a program as sliders.
+
+Value: TypeAlias = float | str | bool
+
+_LITERALS = (ast.Number, ast.String, ast.Boolean)
+_SLACK = 1e-9
+"""Tolerance at the ends of a range, relative to the number."""
 
 
-def _constrained(view: View, found: Elements, place: Span) -> list[int]:
-    if view.drawn is None or view.drawn.model is None:
-        return []
-    places, around = Places(view), list[tuple[int, ConstraintReport]]()
-    for report in view.drawn.model.constraints:
-        span = places.now(report.span)
-        if span is not None and span.source is place.source and span.start <= place.start <= span.end:
-            around.append((span.end - span.start, report))
-    least = min((length for length, _ in around), default=0)
-    return found.all_near(path for length, r in around if length == least for path in r.mentions())
+def sliders(view: View) -> Iterator[Slider]:
+    """Yields the params in order of writing; of a broken text those of the picture, which are read only."""
+    known, places = view.knobs, Places(view)
+    if not known and view.is_stale and view.drawn is not None:
+        known = view.drawn.knobs
+    for knob in known:
+        declared = view.declaration(knob)
+        # a count: a whole number without a unit, with a range from one whole number to another
+        is_count = declared is not None and is_whole(knob) and declared.value.span.text.isdecimal()
+        yield Slider(
+            knob.path,
+            knob.path.rpartition(".")[2],
+            _kind(knob),
+            knob.value,
+            knob.unit,
+            knob.low,
+            knob.high,
+            1.0 if is_count and knob.step is None else knob.step,
+            knob.choices,
+            knob.doc or "",
+            declared.value.span if declared is not None else places.now(knob.span),
+            declared is not None and _is_literal(declared.value),
+        )
+
+
+def set_knob(view: View, path: str, value: Value) -> list[Edit]:
+    """Returns the edits that make a value, or a text's worth, a param's default. Raises RefusalError."""
+    knob = workspace.find(view.knobs, path)
+    declared = view.declaration(knob)
+    if declared is None:
+        raise refusal("E0945", f"`{knob.path}` is declared in the library, and cannot be changed there")
+    if not _is_literal(declared.value):
+        written = declared.value.span.one_line
+        raise refusal("E0945", f"`{knob.path}` is worked out, as `{written}`; change what it is made of")
+    _require_allowed(knob, _worked_out(knob, value))
+    edits = [workspace.edit_at(knob, declared, value)]
+    if _is_typed(knob, value):
+        _require_sense(view, edits)
+    return edits
+
+
+def worked_out(view: View, values: Mapping[str, Value]) -> dict[str, Value]:
+    """Returns values of params with texts for numbers worked out. Raises RefusalError for an invalid one."""
+    found = dict(values)
+    for path, value in values.items():
+        if isinstance(value, str) and _is_typed(knob := workspace.find(view.knobs, path), value):
+            found[path] = _worked_out(knob, value)
+            _require_allowed(knob, found[path])
+    return found
+
+
+def _is_typed(knob: Knob, value: Value) -> bool:
+    return isinstance(value, str) and _kind(knob) in ("number", "choice") and not isinstance(knob.value, str)
+
+
+def _worked_out(knob: Knob, value: Value) -> Value:
+    return workspace.typed(knob, value).value if isinstance(value, str) and _is_typed(knob, value) else value
+
+
+def _require_allowed(knob: Knob, value: Value) -> None:
+    if _is_allowed(knob, value):
+        return
+    said = f"{value:.6g}" if isinstance(value, float) else str(value)
+    why = "none of its choices"
+    if knob.range is not None:
+        low, high = knob.range
+        why = f"outside its range {low:.6g}..{high:.6g}" + (f" {knob.unit}" if knob.unit else "")
+    raise refusal("E0945", f"`{knob.path}` cannot be `{said}`: that is {why}")
+
+
+def _require_sense(view: View, edits: list[Edit]) -> None:
+    """Raises RefusalError if the text could no longer be built, as with a length where a number was."""
+    again = edited(view, edits, hasty())
+    if view.solved is None or again.solved is not None:
+        return
+    for wrong in again.diagnostics:
+        if wrong.is_error:
+            raise refusal("E0945", f"the program cannot be built with this: {wrong.message}")
+
+
+def _is_literal(node: ast.Expression) -> bool:
+    return isinstance(node, _LITERALS) or (isinstance(node, ast.Unary) and _is_literal(node.operand))
+
+
+def _kind(knob: Knob) -> str:
+    if isinstance(knob.value, bool):
+        return "truth"
+    if knob.choices:
+        return "choice"
+    return "text" if isinstance(knob.value, str) else "number"
+
+
+def _is_allowed(knob: Knob, value: Value) -> bool:
+    if knob.choices:
+        return value in knob.choices
+    if not isinstance(value, float | int) or knob.range is None:
+        return True  # what does not fit at all is told by what writes it
+    low, high = knob.range
+    slack = _SLACK * max(1.0, abs(low), abs(high))
+    return math.isfinite(value) and low - slack <= value <= high + slack
+
+
+# --- Problems on the drawing, each with its elements and points.
+
+_QUOTED = re.compile("`([^`]+)`")
+
+
+def problems(
+    view: View, elements: Elements, painting: Sequence[Diagnostic] = (), *, tried: bool = False
+) -> Iterator[Problem]:
+    """Yields the diagnostics with elements and points; of values that are only tried none has a fix."""
+    finder = _Finder(view, elements)
+    for found in (*view.diagnostics, *painting):
+        yield Problem(
+            found.severity.value,
+            found.code,
+            found.message,
+            () if tried and found.fix is not None else found.hints,
+            found.span,
+            tuple(finder.about(found)),
+            tuple(p for p in found.points if all(map(math.isfinite, p))),
+            (found.fix,) if found.fix is not None and not tried else (),
+        )
+
+
+def conflicts(view: View, elements: Elements) -> Iterator[Conflict]:
+    """Yields the conflicting constraints of a program that does not solve."""
+    if view.outcome is None or view.outcome.status == "solved":
+        return
+    finder = _Finder(view, elements)
+    for conflict in view.outcome.conflicts():
+        parties = []
+        for party in conflict.parties:
+            found = tuple(finder.related(party.span, party.path))
+            off = party.off if math.isfinite(party.off) else None
+            parties.append(Party(party.text, party.span, found, off))
+        yield Conflict(conflict.headline, tuple(parties))
+
+
+class _Finder:
+    def __init__(self, view: View, elements: Elements) -> None:
+        self.elements = elements
+        self.constraints: dict[Span, list[ConstraintReport]] = {}
+        model = view.drawn.model if view.drawn is not None else None
+        places = Places(view)
+        for report in model.constraints if model is not None else ():
+            if (span := places.now(report.span)) is not None:
+                self.constraints.setdefault(span, []).append(report)
+
+    def about(self, found: Diagnostic) -> list[int]:
+        """Returns the elements written, or constrained, in the places that a diagnostic names.
+
+        If several share a place, as the turns of a loop do, only those whose paths the message quotes, before
+        it names what is beside them.
+        """
+        spans = [s for s in (found.span, *(label.span for label in found.secondary)) if s is not None]
+        here = [k for span in spans for k in self.elements.written_at(span) or self.related(span)]
+        quoted = set(_QUOTED.findall(found.message.partition(";")[0]))
+        named = [k for k in here if self.elements.values[k].path in quoted]
+        return list(dict.fromkeys(named or here))
+
+    def related(self, span: Span, holder: str | None = None) -> list[int]:
+        """Returns the elements that the constraints in a place relate; only those of `holder`, if given."""
+        reports = self.constraints.get(span, [])
+        paths = [path for r in reports if holder in (None, r.path) for path in r.mentions()]
+        return self.elements.all_near(paths)

@@ -9,32 +9,25 @@ from typing import Any, TypeVar
 from uuid import uuid4
 
 from lsprotocol import types
-from pygls.capabilities import get_capability
 from pygls.exceptions import JsonRpcContentModified, JsonRpcException, JsonRpcInvalidParams
 
-from aidl_lang.common.diagnostics import Edit
 from aidl_lang.common.running import Cancelled
 from aidl_lang.tools.ends import described
+from aidl_lang.tools.ide import lenses
 from aidl_lang.tools.ide.actions import Action, actions
 from aidl_lang.tools.ide.completion import MOST, Completion, complete
 from aidl_lang.tools.ide.hover import hover
-from aidl_lang.tools.ide.lenses import (
-    Found,
-    Inlay,
-    InlayKind,
-    between,
-    can_be_tried,
-    end_lenses,
-    inlays,
-    lenses,
-    tried,
-)
 from aidl_lang.tools.ide.references import CannotError
 from aidl_lang.tools.ide.signatures import OverloadHelp, signature_help
 from aidl_lang.tools.ide.workspace import Positions
-from aidl_lang.tools.lsp import params as asking
-from aidl_lang.tools.lsp.documents import Document, VersionedView
-from aidl_lang.tools.lsp.params import EntryRequest, OfDocument, read
+from aidl_lang.tools.lsp.documents import (
+    ActionRequest,
+    Document,
+    EntryRequest,
+    OfDocument,
+    VersionedView,
+    read,
+)
 from aidl_lang.tools.lsp.running import FAILED, LIMITS
 from aidl_lang.tools.lsp.server import Asked, Server
 from aidl_lang.tools.ranges import described as walked
@@ -55,17 +48,17 @@ class Ends:
 
     def __init__(self, server: Server) -> None:
         self._server = server
-        self._found: dict[str, tuple[int, Found]] = {}
+        self._found: dict[str, tuple[int, lenses.Found]] = {}
         server.on_closed.append(lambda document: self._found.pop(document.uri, None))
 
-    def of(self, uri: str, known: VersionedView) -> Found | None:
+    def of(self, uri: str, known: VersionedView) -> lenses.Found | None:
         version, found = self._found.get(uri, (None, None))
         return found if version == known.version else None
 
     async def check(self, uri: object) -> dict[str, Any]:
         """Tries each param of a document at its ends; the document may not change meanwhile."""
         document, known = await self._workable(uri)
-        found = await self._asked(document, known, tried)
+        found = await self._asked(document, known, lenses.tried)
         self._found[document.uri] = known.version, found
         self._server.refresh_hints()
         sweep, walks = found.sweep, walked(document.uri, found.ranges)
@@ -76,19 +69,13 @@ class Ends:
         """Walks each param of a document, unless that was done for the lenses."""
         document, known = await self._workable(given.uri)
         found = self.of(document.uri, known)
-        walks = found.ranges if found is not None else await self._asked(document, known, between)
+        walks = found.ranges if found is not None else await self._asked(document, known, lenses.between)
         return walked(document.uri, walks) | {"summary": summary(walks)}
 
     async def _workable(self, uri: object) -> tuple[Document, VersionedView]:
         """Returns a document as it was run, if its params can be tried."""
-        document = self._server.documents.get(uri) if isinstance(uri, str) else None
-        if document is None:
-            raise JsonRpcInvalidParams("this document is not open")
-        await document.until_solved(document.serial, _LONGEST)
-        known = document.ran
-        if known is None or known.version != document.version:
-            raise JsonRpcContentModified("the text has changed")
-        if not can_be_tried(known.view):
+        document, known = await self._server.solved_text(uri, _LONGEST)
+        if not lenses.can_be_tried(known.view):
             raise JsonRpcException(_NOTHING, FAILED)
         return document, known
 
@@ -117,7 +104,7 @@ class Ends:
     async def _progress(self) -> Callable[[int, int], None]:
         """Returns a function that shows a client how many ends are done; `told(0, 0)` ends it."""
         server = self._server
-        if not get_capability(server.client_capabilities, "window.work_done_progress", False):
+        if not server.can("window.work_done_progress"):
             return lambda done, count: None
         token = str(uuid4())
         await server.work_done_progress.create_async(token)
@@ -164,10 +151,10 @@ def register_hints(server: Server) -> None:
         if not asked.settings.lenses:
             return []
         made = []
-        for each in lenses(asked.view):
+        for each in lenses.lenses(asked.view):
             command = types.Command(each.title, _OPEN_PREVIEW, arguments=[asked.uri])
             made.append(types.CodeLens(asked.convert.range(each.span), command))
-        for each in end_lenses(asked.view, ends.of(asked.uri, asked.known)):
+        for each in lenses.end_lenses(asked.view, ends.of(asked.uri, asked.known)):
             command = types.Command(each.title, CHECK_ENDS, arguments=[asked.uri])
             made.append(types.CodeLens(asked.convert.range(each.span), command))
         return made
@@ -175,8 +162,8 @@ def register_hints(server: Server) -> None:
     @server.answers_to(types.TEXT_DOCUMENT_INLAY_HINT, types.InlayHintOptions(), patience=_PATIENCE)
     def inlay(asked: Asked, params: types.InlayHintParams) -> list[types.InlayHint]:
         answered.note(asked)
-        others, shown = asked.settings.solved_values, {InlayKind.READING: asked.settings.readings}
-        found = inlays(asked.view, asked.convert.span(params.range))
+        others, shown = asked.settings.solved_values, {lenses.InlayKind.READING: asked.settings.readings}
+        found = lenses.inlays(asked.view, asked.convert.span(params.range))
         return [_hint(each, asked) for each in found if shown.get(each.kind, others)]
 
 
@@ -200,7 +187,7 @@ class _Answered:
             self._server.refresh_hints()
 
 
-def _hint(inlay: Inlay, asked: Asked) -> types.InlayHint:
+def _hint(inlay: lenses.Inlay, asked: Asked) -> types.InlayHint:
     return types.InlayHint(
         asked.convert.position(asked.view.source, inlay.offset),
         inlay.text,
@@ -218,7 +205,6 @@ _KINDS = (
     types.CodeActionKind.RefactorRewrite,
     types.CodeActionKind.SourceFixAll,
 )
-_VERSIONED = "workspace.workspace_edit.document_changes"
 
 
 def register_actions(server: Server) -> None:
@@ -229,7 +215,7 @@ def register_actions(server: Server) -> None:
     async def resolve(action: types.CodeAction) -> types.CodeAction:
         if action.data is None:
             return action
-        given = asking.read(action.data, asking.ActionRequest)
+        given = read(action.data, ActionRequest)
         document = server.documents.get(given.uri)
         asked = await server.asked(document) if document is not None else None
         if asked is None or asked.known.version != given.version:
@@ -240,8 +226,7 @@ def register_actions(server: Server) -> None:
     @server.command("aidl.applyFixes")
     async def apply_fixes(*arguments: Any) -> bool:
         """Applies the fixes of a document, for clients that have commands and no code actions."""
-        document = server.documents.get(arguments[0]) if arguments and isinstance(arguments[0], str) else None
-        asked = await server.asked(document) if document is not None else None
+        asked = await server.asked(server.document(arguments[0] if arguments else None))
         if asked is None:
             raise JsonRpcInvalidParams("this document is not open")
         changes = await server.answers.ask(lambda: _all_fixes(asked))
@@ -253,7 +238,7 @@ def _all_fixes(asked: Asked) -> types.WorkspaceEdit:
     whole = len(asked.view.source.text)
     for action in actions(asked.view, 0, whole):
         if action.kind == types.CodeActionKind.SourceFixAll.value:
-            return _edit(asked, action.make())
+            return asked.convert.change(action.make())
     raise JsonRpcException("there is nothing to fix", FAILED)
 
 
@@ -272,17 +257,12 @@ def _offer(asked: Asked, params: types.CodeActionParams) -> list[types.CodeActio
         )
         if action.mends is not None or not resolves:
             try:
-                offer.edit = _edit(asked, action.make())
+                offer.edit = asked.convert.change(action.make())
             except CannotError:
                 continue
         else:
-            offer.data = {
-                "uri": asked.uri,
-                "version": asked.known.version,
-                "start": span.start,
-                "end": span.end,
-                "kind": action.kind,
-            }
+            text = {"uri": asked.uri, "version": asked.known.version}
+            offer.data = {**text, "start": span.start, "end": span.end, "kind": action.kind}
         made.append(offer)
     return made
 
@@ -301,15 +281,11 @@ def _is_mended(shown: types.Diagnostic, action: Action, asked: Asked) -> bool:
     return shown.range == asked.convert.range(mends.span)
 
 
-def _worked_out(asked: Asked, given: asking.ActionRequest, title: str) -> types.WorkspaceEdit:
+def _worked_out(asked: Asked, given: ActionRequest, title: str) -> types.WorkspaceEdit:
     for action in actions(asked.view, given.start, given.end):
         if (action.title, action.kind) == (title, given.kind):
-            return _edit(asked, action.make())
+            return asked.convert.change(action.make())
     raise JsonRpcContentModified("the text has changed")
-
-
-def _edit(asked: Asked, edits: Sequence[Edit]) -> types.WorkspaceEdit:
-    return asked.convert.changes(asked.convert.by_file(edits), asked.can(_VERSIONED))
 
 
 _KIND = {
@@ -362,9 +338,23 @@ def register_writing(server: Server) -> None:
                 item.documentation = _markdown(said) if said else None
         return item
 
-    server.answers_to(types.TEXT_DOCUMENT_HOVER, patience=_HOVER_PATIENCE)(_hover)
+    @server.answers_to(types.TEXT_DOCUMENT_HOVER, patience=_HOVER_PATIENCE)
+    def describe(asked: Asked, params: types.HoverParams) -> types.Hover | None:
+        found = hover(asked.view, asked.convert.offset(params.position))
+        return None if found is None else types.Hover(_markdown(found.text), asked.convert.range(found.span))
+
     helping = types.SignatureHelpOptions(trigger_characters=["(", ","], retrigger_characters=[")"])
-    server.answers_to(types.TEXT_DOCUMENT_SIGNATURE_HELP, helping)(_help)
+
+    @server.answers_to(types.TEXT_DOCUMENT_SIGNATURE_HELP, helping)
+    def help_call(asked: Asked, params: types.SignatureHelpParams) -> types.SignatureHelp | None:
+        found = signature_help(asked.view, asked.convert.offset(params.position))
+        if found is None:
+            return None
+        return types.SignatureHelp(
+            [_overload(overload) for overload in found.overloads],
+            active_signature=found.active,
+            active_parameter=_active(found.overloads[found.active]),
+        )
 
 
 class _Lists:
@@ -404,22 +394,6 @@ def _item(each: Completion, asked: Asked, snippets: bool, data: dict[str, object
         text_edit=types.TextEdit(edit.range(each.span), each.text if is_snippet else each.plain),
         additional_text_edits=[edit.edit(e) for e in each.extra] or None,
         data=data,
-    )
-
-
-def _hover(asked: Asked, params: types.HoverParams) -> types.Hover | None:
-    found = hover(asked.view, asked.convert.offset(params.position))
-    return None if found is None else types.Hover(_markdown(found.text), asked.convert.range(found.span))
-
-
-def _help(asked: Asked, params: types.SignatureHelpParams) -> types.SignatureHelp | None:
-    found = signature_help(asked.view, asked.convert.offset(params.position))
-    if found is None:
-        return None
-    return types.SignatureHelp(
-        [_overload(overload) for overload in found.overloads],
-        active_signature=found.active,
-        active_parameter=_active(found.overloads[found.active]),
     )
 
 

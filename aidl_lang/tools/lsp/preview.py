@@ -15,7 +15,6 @@ from typing import Any, TypeAlias, TypeVar
 
 from lsprotocol import types
 from pygls.exceptions import (
-    JsonRpcContentModified,
     JsonRpcException,
     JsonRpcInvalidParams,
     JsonRpcRequestCancelled,
@@ -25,25 +24,28 @@ from aidl_lang.checking import units
 from aidl_lang.common.diagnostics import AidlError, Diagnostic, Edit
 from aidl_lang.common.records import record
 from aidl_lang.common.running import Cancelled
-from aidl_lang.export import FORMATS, OFFERED, Format
+from aidl_lang.export import FORMATS, OFFERED
 from aidl_lang.export.job import Exported, ExportError, Options, file_names
 from aidl_lang.export.profiles import PROFILES
 from aidl_lang.export.themes import THEMES
-from aidl_lang.tools.ide.dragging import Handle, drag
-from aidl_lang.tools.ide.preview import (
-    LAYERS,
-    Preview,
-    Writer,
-    preview,
-    set_knob,
-    tried,
-    with_handles,
-    worked_out,
-)
+from aidl_lang.tools.ide.dragging import Handle, drag, handles
+from aidl_lang.tools.ide.preview import layered, preview, tried
+from aidl_lang.tools.ide.preview.elements import Preview, Writer, set_knob, worked_out
 from aidl_lang.tools.ide.references import CannotError
 from aidl_lang.tools.ide.workspace import View
-from aidl_lang.tools.lsp.documents import Document, VersionedView
-from aidl_lang.tools.lsp.params import ApplyFix, Drag, Export, OfDocument, OfVersion, SetKnob, Show, Try, read
+from aidl_lang.tools.lsp.documents import (
+    ApplyFix,
+    Document,
+    Drag,
+    Export,
+    OfDocument,
+    OfVersion,
+    SetKnob,
+    Show,
+    Try,
+    VersionedView,
+    read,
+)
 from aidl_lang.tools.lsp.running import FAILED
 from aidl_lang.tools.lsp.server import Asked, Server
 
@@ -63,7 +65,7 @@ class Option:
     hint     an example, shown in the empty field
     change   puts what was given, which is not empty, into the options
     choices  what may be given; empty for what is typed
-    fits     tells whether a format has it
+    of       what formats that have it do, a field of theirs
     """
 
     name: str
@@ -71,7 +73,7 @@ class Option:
     hint: str
     change: Change
     choices: tuple[str, ...] = ()
-    fits: Callable[[Format], bool] = lambda made: made.cuts
+    of: str = "cuts"
 
 
 _NESTING = 5.0
@@ -82,10 +84,6 @@ def _nested(options: Options, given: str) -> Options:
     return replace(options, nest=_NESTING if given == "outlines" else None)
 
 
-def _is_picture(made: Format) -> bool:
-    return made.tiles
-
-
 OPTIONS = (
     Option("sheet", "Sheet", "600x400, a3", lambda o, given: replace(o, sheet=units.size(given))),
     Option("spacing", "Spacing", "3mm", lambda o, given: replace(o, spacing=units.length(given))),
@@ -94,8 +92,8 @@ OPTIONS = (
     Option(
         "profile", "Profile", "plain", lambda o, given: replace(o, profile=PROFILES[given]), tuple(PROFILES)
     ),
-    Option("theme", "Theme", "colour", lambda o, given: replace(o, theme=given), THEMES, _is_picture),
-    Option("tile", "Pages", "a4", lambda o, given: replace(o, tile=units.size(given)), fits=_is_picture),
+    Option("theme", "Theme", "colour", lambda o, given: replace(o, theme=given), THEMES, "tiles"),
+    Option("tile", "Pages", "a4", lambda o, given: replace(o, tile=units.size(given)), of="tiles"),
 )
 
 
@@ -109,7 +107,7 @@ def offered() -> dict[str, Any]:
                 "label": option.label,
                 "hint": option.hint,
                 "choices": option.choices,
-                "formats": [name for name in OFFERED if option.fits(FORMATS[f".{name}"])],
+                "formats": [name for name in OFFERED if getattr(FORMATS[f".{name}"], option.of)],
             }
             for option in OPTIONS
         ],
@@ -210,15 +208,13 @@ class Pictures:
         asked = self.server.asked_now(document, known)
         shown = self._shown.get(document, _Shown())
         look = shown.viewers.get(viewer, _PLAIN)
-        made = await self._work(
-            ("picture", key), document, lambda: preview(known.view, look, known=shown.handles)
-        )
+        work = partial(preview, known.view, look, known=shown.handles)
+        made = await self._work(("picture", key), document, work)
         if made is None:
             return None
         if document in self._shown and document.ran is known:
-            shown.made = {each: of for each, of in shown.made.items() if of[0] is known} | {
-                look: (known, made)
-            }
+            kept = {each: of for each, of in shown.made.items() if of[0] is known}
+            shown.made = {**kept, look: (known, made)}
             self.server.in_background(self._complete(document, asked, made))
         return _written(asked, made, known.view)
 
@@ -244,18 +240,15 @@ class Pictures:
         if document.ran is not asked.known or document not in self._shown:
             return
         view = asked.known.view
-        full = await self._work(
-            ("handles", document), document, partial(with_handles, made, view), first=False
-        )
+        found = await self._work(("handles", document), document, lambda: tuple(handles(view)), first=False)
         shown = self._shown.get(document)
-        if full is None or shown is None or document.ran is not asked.known:
+        if found is None or shown is None or document.ran is not asked.known:
             return
-        shown.handles = full.handles
+        shown.handles = found
         for look, viewers in shown.looks().items():
             known, before = shown.made.get(look, (None, made))
-            if known is asked.known and before.handles != full.handles:
-                complete = replace(before, handles=full.handles)
-                self._tell(viewers, _written(asked, complete, view))
+            if known is asked.known and before.handles != found:
+                self._tell(viewers, _written(asked, replace(before, handles=found), view))
 
     async def _work(
         self, key: Hashable, document: Document, function: Callable[[], T], *, first: bool = True
@@ -277,17 +270,15 @@ class Pictures:
         if known is None or outcome is None:
             return
         severities = [diagnostic.severity.value for diagnostic in outcome.diagnostics]
-        self.server.protocol.tell(
-            "aidl/status",
-            {
-                "uri": document.uri,
-                "version": known.version,
-                "status": outcome.status,
-                "degrees": outcome.model.degrees if outcome.model is not None else None,
-                "seconds": sum(outcome.timings.values()),
-                "problems": {"errors": severities.count("error"), "warnings": severities.count("warning")},
-            },
-        )
+        status = {
+            "uri": document.uri,
+            "version": known.version,
+            "status": outcome.status,
+            "degrees": outcome.model.degrees if outcome.model is not None else None,
+            "seconds": sum(outcome.timings.values()),
+            "problems": {"errors": severities.count("error"), "warnings": severities.count("warning")},
+        }
+        self.server.protocol.tell("aidl/status", status)
 
 
 def _written(asked: Asked, made: Preview, view: View) -> Json:
@@ -296,7 +287,6 @@ def _written(asked: Asked, made: Preview, view: View) -> Json:
 
 _LONGEST_WAIT = 30.0
 """Most seconds to wait for an outcome: longer than a run may take."""
-_DIMENSIONS = "dimensions"
 
 
 def register_preview(server: Server) -> None:
@@ -328,7 +318,7 @@ class _Requests:
 
     async def preview(self, given: Show) -> Json | None:
         """Shows a document from now on."""
-        document = self._document(given)
+        document = self.server.document(given.uri)
         self._asked[given.uri, given.viewer] += 1
         self.pictures.show(document, given)
         self.server.runner.active = document
@@ -345,7 +335,7 @@ class _Requests:
         """Returns the picture with other values of params, or with a point dragged; writes nothing."""
         viewer = given.uri, given.viewer
         asked_before = self._asked[viewer]
-        asked, document = await self._solved(given, given.version)
+        asked, document = await self._solved(given)
 
         def view() -> View:
             if given.drag is not None:
@@ -365,15 +355,14 @@ class _Requests:
             raise JsonRpcException(_why(reason), FAILED) from None
 
     async def set_knob(self, given: SetKnob) -> Json:
-        return await self._edit(
-            given, lambda view: set_knob(view, given.path, given.value), f"Set {given.path}"
-        )
+        edits = partial(set_knob, path=given.path, value=given.value)
+        return await self._edit(given, edits, f"Set {given.path}")
 
     async def drag(self, given: Drag) -> Json:
         return await self._edit(given, lambda view: drag(view, given.id, given.to).edits, "Drag")
 
     async def fix(self, given: ApplyFix) -> Json:
-        asked, _ = await self._solved(given, given.version)
+        asked, _ = await self._solved(given)
         found = asked.view.diagnostics
         fix = found[given.problem].fix if 0 <= given.problem < len(found) and given.fix == 0 else None
         if fix is None:
@@ -381,18 +370,17 @@ class _Requests:
         return await self._apply(asked, fix.edits, fix.title)
 
     async def export(self, given: Export) -> Json:
-        suffix, show = f".{given.format}", frozenset(given.show)
+        suffix = f".{given.format}"
         if suffix not in FORMATS:
             raise JsonRpcInvalidParams(f"there is no format `{suffix}`")
-        document = self._document(given)
+        document = self.server.document(given.uri)
         await document.until_solved(document.serial, _LONGEST_WAIT)
-        outcome = document.ran.view.outcome if document.ran is not None else None
-        if outcome is None or outcome.model is None or outcome.drawing is None:
+        solved = document.ran.view.solved if document.ran is not None else None
+        if solved is None:
             raise JsonRpcException("the program does not draw, so there is nothing to export", FAILED)
-        plain = Options(show & set(LAYERS) - {_DIMENSIONS}, dimension=_DIMENSIONS in show)
         try:
-            options = changed(plain, given.options)
-            made = await self.server.searches.ask(lambda: outcome.exported(suffix, options))
+            options = changed(layered(given.show), given.options)
+            made = await self.server.searches.ask(lambda: solved.outcome.exported(suffix, options))
         except ExportError as reason:
             raise JsonRpcException(_worded(reason.diagnostic), FAILED) from None
         except ValueError as reason:
@@ -404,19 +392,8 @@ class _Requests:
     async def exports(self, given: OfDocument) -> Json:
         return offered()
 
-    def _document(self, given: OfDocument) -> Document:
-        document = self.server.documents.get(given.uri)
-        if document is None:
-            raise JsonRpcInvalidParams("this document is not open")
-        return document
-
-    async def _solved(self, given: OfDocument, version: int | None) -> tuple[Asked, Document]:
-        """Returns the outcome of a version. Raises JsonRpcContentModified if that is gone."""
-        document = self._document(given)
-        await document.until_solved(document.serial, _LONGEST_WAIT)
-        known = document.ran
-        if known is None or known.version != document.version or version not in (None, known.version):
-            raise JsonRpcContentModified("the text has changed")
+    async def _solved(self, given: OfVersion | ApplyFix) -> tuple[Asked, Document]:
+        document, known = await self.server.solved_text(given.uri, _LONGEST_WAIT, given.version)
         return self.server.asked_now(document, known), document
 
     async def _work(
@@ -440,21 +417,17 @@ class _Requests:
     async def _edit(self, given: OfVersion, edits: Callable[[View], Sequence[Edit]], label: str) -> Json:
         """Makes one edit of a document after the other: each on the text that the one before made."""
         self._asked[given.uri, given.viewer] += 1
-        async with self._document(given).editing:
-            asked, document = await self._solved(given, given.version)
-            key = ("edit", given.uri)
+        async with self.server.document(given.uri).editing:
+            asked, document = await self._solved(given)
             try:
-                made = await self._work(key, document, asked, lambda: edits(asked.view))
+                made = await self._work(("edit", given.uri), document, asked, lambda: edits(asked.view))
             except (AidlError, CannotError) as reason:
                 return _not_applied(_why(reason))
             return await self._apply(asked, made, label)
 
     async def _apply(self, asked: Asked, edits: Sequence[Edit], label: str) -> Json:
-        """Asks the client to change the text."""
-        convert = asked.convert
-        versioned = asked.can("workspace.workspace_edit.document_changes")
-        changes = convert.changes(convert.by_file(edits), versioned)
-        answer = await self.server.workspace_apply_edit_async(types.ApplyWorkspaceEditParams(changes, label))
+        params = types.ApplyWorkspaceEditParams(asked.convert.change(edits), label)
+        answer = await self.server.workspace_apply_edit_async(params)
         if answer.applied:
             return {"applied": True}
         return _not_applied(answer.failure_reason or "the editor did not change the text")
