@@ -24,7 +24,7 @@ from aidl_lang.syntax.tables import (
     is_open_comment,
     tokenize,
 )
-from aidl_lang.syntax.tree import Builder, Nodes
+from aidl_lang.syntax.tree import Builder
 
 
 @record()
@@ -110,13 +110,12 @@ class _Reader:
         self.source = source
         self.tokens = tokens.tokens
         self.limits = limits
-        self.automaton = Automaton()
-        self.builder = builder
+        self.automaton = Automaton(builder)
         self.diagnostics = _spaced_calls(source, tokens)
         self.diagnostics += understood(source, self.tokens)
         self.diagnostics += lists_as_statements(source, self.tokens)
         self.automaton.enter_block()
-        self.last = Checkpoint(0, self.automaton.states[:], self.automaton.values[:], [0])
+        self.last = Checkpoint(0, self.automaton.states[:], self.automaton.values[:], [0], 0)
         self.repairs = 0
         self.may_be_deep = False
         self.passed_braces: list[int] = []  # for each `{` passed over, how many blocks were open around it
@@ -140,7 +139,7 @@ class _Reader:
                 position = self._recover(position)
                 continue
             if token.kind == END:
-                return self._statements()
+                return automaton.made
             if automaton.began_statement:
                 self.last = automaton.checkpoint(position)
                 self.repairs = 0
@@ -152,11 +151,6 @@ class _Reader:
                 if len(automaton.states) > 4 * limits.max_nesting:
                     return self._stop(_too_deep(Span(self.source, token.start, token.end), limits))
             position += 1
-
-    def _statements(self) -> tuple[ast.Statement, ...]:
-        assert self.automaton.tree is not None
-        statements: tuple[ast.Statement, ...] = Nodes(self.builder).transform(self.automaton.tree)
-        return statements
 
     def _is_item(self, position: int) -> bool:
         """Tells whether a `-` begins a constraint below one that is whole."""
@@ -178,7 +172,7 @@ class _Reader:
         while not self.automaton.feed(Token(END, "", end, end)):
             if not self.automaton.feed(Token("}", "", end, end)):
                 self.automaton.drop_statement()
-        return self._statements()
+        return self.automaton.made
 
     # --- Recovery ---
 

@@ -5,19 +5,18 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Callable, Iterator
-from copy import copy
 from dataclasses import field
 from functools import cache
-from operator import itemgetter
+from keyword import iskeyword
 from pathlib import Path
-from typing import Any, cast
+from typing import Any, NamedTuple, cast
 
 import lark
-from lark import Lark, TextSlice, Tree
+from lark import Lark, TextSlice
 from lark.grammar import NonTerminal, Rule, RuleOptions, Terminal
 from lark.lexer import LexerState, PatternRE, PatternStr, TerminalDef
 from lark.lexer import Token as LarkToken
-from lark.parsers.lalr_analysis import Action, Reduce, Shift
+from lark.parsers.lalr_analysis import Reduce, Shift
 from lark.parsers.lalr_parser_state import ParseConf
 
 from aidl_lang.common.records import record
@@ -51,15 +50,16 @@ class _Kept:
 class Tables:
     """Lark's parser, and its terminals by what they are in the text.
 
-    `types` are Lark's names of the terminals whose text is fixed (`==`, `param`), by that text, and `kinds`
-    these the other way around; `patterns` are those of the other terminals, and of these `comments` are no
-    tokens. `reserved` are the words that CALL leaves out, `soft_words` those that are names wherever the
-    grammar has no place for them. In `statement_states` a statement may begin.
+    `parsing` has its states, and makes nothing; `makers` make the value of each rule, from a builder and the
+    symbols. `types` are Lark's names of the terminals whose text is fixed (`==`, `param`), by that text, and
+    `kinds` these the other way around; `patterns` are those of the other terminals, and of these `comments`
+    are no tokens. `reserved` are the words that CALL leaves out, `soft_words` those that are names wherever
+    the grammar has no place for them. In `statement_states` a statement may begin.
     """
 
     lark: Lark
-    without_tree: ParseConf[int]
-    states: dict[int, dict[str, tuple[Action, Any]]]
+    parsing: ParseConf[int]
+    makers: dict[Rule, Callable[[Any, list[Any]], Reduced]]
     types: dict[str, str]
     kinds: dict[str, str]
     patterns: dict[str, str]
@@ -153,33 +153,43 @@ def _states(made: Lark) -> tuple[list[Any], list[tuple[str, ...]], int]:
     return states, list(sets), numbers[conf.end_state]
 
 
-class PlacedTree(Tree[Any]):
-    """A tree with its place in the text, from `begin` to `until`; from `start` to `end` with the parentheses
-    around it. Lark's own way to places takes a third of all the time.
+class Reduced(NamedTuple):
+    """What a rule made: a value, and its place with the parentheses around it. The members of a list become
+    parts of what the next rule makes.
     """
 
-    begin: int | None = None
-    until = start = end = 0
-
-    @property
-    def meta(self) -> Any:
-        return self
+    value: Any
+    start: int
+    end: int
 
 
-def _placed(rule: Rule, make: Callable[[list[Any]], Any]) -> Callable[[list[Any]], Any]:
-    """Returns what makes the tree of a rule, with its place; most rules hand on one tree."""
-    if rule.options.expand1 and not rule.alias and len(rule.expansion) == 1 and not rule.expansion[0].is_term:
-        return itemgetter(0)
+def _maker(rule: Rule) -> Callable[[Any, list[Any]], Reduced]:
+    """Returns what makes the value of a rule: the method of a builder that has its name, or a list if that
+    begins with `_`.
+    """
+    name = rule.alias or rule.origin.name
+    method = "" if name.startswith("_") else name + "_" * iskeyword(name)
+    is_filtered = [isinstance(s, Terminal) and s.filter_out for s in rule.expansion]
+    kept = [i for i, is_out in enumerate(is_filtered) if rule.options.keep_all_tokens or not is_out]
+    hands_on = rule.options.expand1 and not rule.alias and len(kept) == 1
 
-    def placed(symbols: list[Any]) -> Any:
-        tree = make(symbols)
-        if symbols:
-            tree.start, tree.end = symbols[0].start, symbols[-1].end
-            if tree.begin is None:
-                tree.begin, tree.until = tree.start, tree.end
-        return tree
+    def make(builder: Any, symbols: list[Any]) -> Reduced:
+        start, end = (symbols[0].start, symbols[-1].end) if symbols else (0, 0)
+        if hands_on:
+            return Reduced(symbols[kept[0]].value, start, end)
+        parts: list[Any] = []
+        for i in kept:
+            value = symbols[i].value if type(symbols[i]) is Reduced else symbols[i]
+            if type(value) is not list:
+                parts.append(value)
+            elif parts:
+                parts += value
+            else:
+                parts = value  # which grows in place, as a list of statements is long
+        value = getattr(builder, method)(builder.span(start, end), *parts) if method else parts
+        return Reduced(value, start, end)
 
-    return placed
+    return make
 
 
 def _at(state: int) -> dict[str, int]:
@@ -200,23 +210,19 @@ def decoded(text: bytes) -> Tables:
     kept = json.loads(text)
     memo = {int(number): value for number, value in kept["memo"].items()}
     rules = {place["@"]: _rule(*row) for place, row in zip(kept["data"]["rules"], kept["rules"], strict=True)}
-    kept["data"]["options"]["tree_class"] = PlacedTree
     made = Lark.load({"data": kept["data"], "memo": memo | rules})
     conf = made.parse_interactive().parser_state.parse_conf
     reduce = [(Reduce, rule) for rule in made.rules]
-    callbacks: dict[Any, Any] = conf.callbacks
-    callbacks.update({rule: _placed(rule, made) for rule, made in callbacks.items()})
+    conf.callbacks = {}  # of Lark, which would make trees
     for number, (shifts, *reductions) in enumerate(kept["states"]):
         conf.states[number] = row = {symbol: (Shift, target) for symbol, target in shifts.items()}
         for i in range(0, len(reductions), 2):
             row.update(dict.fromkeys(kept["sets"][reductions[i + 1]], reduce[reductions[i]]))
-    without_tree = copy(conf)
-    without_tree.callbacks = {}
     types, soft_words = _types(made), frozenset(kept["soft_words"])
     return Tables(
         made,
-        without_tree,
-        conf.states,
+        conf,
+        {rule: _maker(rule) for rule in made.rules},
         types,
         {name: text for text, name in types.items()} | dict.fromkeys(_Kept.always_accept, UNKNOWN),
         {t.name: t.pattern.to_regexp() for t in made.terminals if not isinstance(t.pattern, PatternStr)},

@@ -1,4 +1,4 @@
-"""The builder of nodes: for each rule of the grammar, `Nodes` calls the method of `Builder` with its name.
+"""The builder of nodes: for each rule of the grammar the parser calls the method with its name.
 
 Every method takes the place of the rule in the text and the values of its symbols. It reports mistakes that
 the grammar cannot exclude (a second `at`, an unknown kind), beside a node that keeps what was meant.
@@ -8,10 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from keyword import iskeyword
 from typing import Any
-
-from lark.visitors import Transformer_NonRecursive
 
 from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix
 from aidl_lang.common.names import fold, is_slip, nearest
@@ -527,25 +524,6 @@ def out_of_place(attribute: Span, before: str) -> Diagnostic:
     message = f"an attribute stands before a structure or a geometry, not before {before}"
     hint = 'write it in front of the definition it is about: `@color("red") solid a { … }`'
     return Diagnostic("E0119", message, attribute, hints=(hint,))
-
-
-class Nodes(Transformer_NonRecursive[Token, Any]):
-    """Makes the nodes of Lark's tree, with the methods of a builder."""
-
-    def __init__(self, builder: Builder) -> None:
-        super().__init__(visit_tokens=False)
-        self.builder = builder
-
-    def __default__(self, data: str, children: list[Any], meta: Any) -> Any:
-        # A trailing underscore keeps clear of Python's own words.
-        method = getattr(self.builder, data + "_" if iskeyword(data) else data)
-        symbols: list[Any] = []
-        for part in children:
-            if type(part) is list:
-                symbols += part
-            else:
-                symbols.append(part)
-        return method(self.builder.span(meta.begin, meta.until), *symbols)
 
 
 def _split(parts: tuple[Any, ...]) -> tuple[tuple[ast.Attribute, ...], list[Any]]:
