@@ -16,14 +16,14 @@ from aidl_lang.common.records import record
 from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.syntax import ast
 from aidl_lang.syntax.automaton import CLOSE_BLOCK, LONGEST, Automaton, Checkpoint, Trouble
-from aidl_lang.syntax.rewriting import begins_with_sign, lines_joined_by_sign, lists_as_statements, understood
-from aidl_lang.syntax.tables import (
-    END,
-    Token,
-    Tokens,
-    is_open_comment,
-    tokenize,
+from aidl_lang.syntax.rewriting import (
+    begins_with_sign,
+    lines_joined_by_sign,
+    lists_as_statements,
+    spaced_call,
+    understood,
 )
+from aidl_lang.syntax.tables import END, STATEMENT_WORDS, Token, Tokens, is_open_comment, tokenize
 from aidl_lang.syntax.tree import Builder
 
 
@@ -93,14 +93,6 @@ def _read(source: SourceFile, limits: TextLimits, closed: tuple[int, ...] = ()) 
     return Parsed(module, ordered(diagnostics)), tokens.tokens
 
 
-def _spaced_calls(source: SourceFile, tokens: Tokens) -> list[Diagnostic]:
-    if not tokens.spaced_calls:
-        return []
-    from aidl_lang.syntax.errors import spaced_call
-
-    return [spaced_call(source, token) for token in tokens.spaced_calls]
-
-
 class _Reader:
     """Reads one file: feeds the automaton, and mends or skips at a token that cannot stand."""
 
@@ -111,7 +103,7 @@ class _Reader:
         self.tokens = tokens.tokens
         self.limits = limits
         self.automaton = Automaton(builder)
-        self.diagnostics = _spaced_calls(source, tokens)
+        self.diagnostics = [spaced_call(source, token) for token in tokens.spaced_calls]
         self.diagnostics += understood(source, self.tokens)
         self.diagnostics += lists_as_statements(source, self.tokens)
         self.automaton.enter_block()
@@ -318,12 +310,7 @@ class _Reader:
         )
 
 
-_CERTAIN_WORDS = frozenset(
-    (
-        *("param", "var", "let", "constrain", "prefer", "assert", "import", "fn", "shape", "constraint"),
-        *("alias", "template", "construction", "todo"),
-    )
-)
+_CERTAIN_WORDS = STATEMENT_WORDS - {"for", "if"}
 _POSSIBLE_STARTS = frozenset(["NAME", "CALL", "NUMBER", "(", "@", "for", "if"])
 
 

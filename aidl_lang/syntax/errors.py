@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from aidl_lang.common.diagnostics import Diagnostic, Label
+from aidl_lang.common.diagnostics import Label
 from aidl_lang.common.prose import listed
-from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.syntax import foreign, missing, rewriting, spelling
-from aidl_lang.syntax.automaton import SyntaxProblem, Trouble, replaced, wrong
-from aidl_lang.syntax.tables import END, Token, describe
+from aidl_lang.syntax.automaton import SyntaxProblem, Trouble, wrong
+from aidl_lang.syntax.tables import END, describe
 
 _QUESTIONS: tuple[Callable[[Trouble], SyntaxProblem | None], ...] = (
     foreign.prose,
@@ -105,14 +104,3 @@ def _unexpected(t: Trouble) -> SyntaxProblem:
         message = f"expected {expected}, not {place}" if expected else f"{place} cannot stand here"
     secondary = (Label(t.span(t.first), "in the statement that begins here"),) if not t.between else ()
     return wrong("E0101", message, t.span(), secondary=secondary)
-
-
-def spaced_call(source: SourceFile, token: Token) -> Diagnostic:
-    """Returns E0114 for a call whose `(` does not touch its name; it is read as the call that was meant."""
-    name = token.text[:-1]
-    gap = Span(source, token.start + len(name), token.end - 1)
-    message = f"the `(` of a call touches its name: `{name}(`"
-    span = Span(source, token.start, token.end)
-    label = "a space ends the name here"
-    hint = "newlines and spaces end no statement, so `f (x)` would be the name `f` and then `(x)`"
-    return Diagnostic("E0114", message, span, label, hints=(hint,), fix=replaced("remove the space", gap, ""))

@@ -18,7 +18,16 @@ from aidl_lang.syntax.automaton import (
     replaced,
     wrong,
 )
-from aidl_lang.syntax.tables import END, STATEMENT_WORDS, VALUE_STARTS, Token, begins_line, describe, kind_of
+from aidl_lang.syntax.tables import (
+    END,
+    STATEMENT_WORDS,
+    VALUE_ENDS,
+    VALUE_STARTS,
+    Token,
+    begins_line,
+    describe,
+    kind_of,
+)
 from aidl_lang.syntax.tree import out_of_place
 
 # --- Placements in lists and arguments, where none can stand.
@@ -295,7 +304,6 @@ def else_without_if(t: Trouble) -> SyntaxProblem | None:
 _CLOSER = {"(": ")", "CALL": ")", "[": "]", "{": "}"}
 _BRACKET = {"(": "the parenthesis", "CALL": "the call", "[": "the bracket", "{": "the block"}
 _ITEMS = {"CALL": "arguments", "{": "arguments", "[": "items", "(": "coordinates"}
-_VALUE_ENDS = ("NAME", "NUMBER", ")", "]")
 
 
 def wrong_closer(t: Trouble) -> SyntaxProblem | None:
@@ -431,7 +439,7 @@ def comma_before_block(t: Trouble) -> SyntaxProblem | None:
             return None
     else:
         return None
-    if before.kind not in (*_VALUE_ENDS, "STRING"):
+    if before.kind not in (*VALUE_ENDS, "STRING"):
         return None
     place = Span(t.source, before.end, before.end)
     message = f"expected `,` before a block of arguments that begins with `{token.text}`"

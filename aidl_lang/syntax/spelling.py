@@ -18,6 +18,7 @@ from aidl_lang.syntax.tables import (
     UNIT_WORDS,
     UNITS,
     UNKNOWN,
+    VALUE_ENDS,
     Token,
     example,
     is_open_comment,
@@ -123,7 +124,7 @@ def _fence(t: Trouble) -> SyntaxProblem:
 
 def _bars(t: Trouble) -> SyntaxProblem | None:
     """Recognises `|a.x|` where a value is due: an absolute value between bars."""
-    is_behind_value = t.before is not None and t.before.kind in ("NAME", "NUMBER", ")", "]")
+    is_behind_value = t.before is not None and t.before.kind in VALUE_ENDS
     stop = next((k for k in range(t.position + 1, len(t.tokens)) if t.tokens[k].text == "|"), t.position)
     close = t.tokens[stop]
     inner = t.source.text[t.token.end : close.start].strip()

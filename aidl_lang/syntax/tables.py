@@ -383,10 +383,12 @@ STATEMENT_WORDS = frozenset(
     )
 )
 
-# The tokens that may begin a value.
+# The tokens that may begin a value, and those that may end one.
 VALUE_STARTS = frozenset(
     ["NAME", "NUMBER", "STRING", "CALL", "(", "[", "true", "false", "True", "False", "if", "not"]
 )
+
+VALUE_ENDS = ("NAME", "NUMBER", ")", "]")
 
 # A sign of other languages or of typography, its counterpart here, and a word about it.
 SIGNS: dict[str, tuple[str | None, str]] = {
