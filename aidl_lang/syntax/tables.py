@@ -402,37 +402,28 @@ SIGNS: dict[str, tuple[str | None, str]] = {
     "π": (None, "write `pi`"), "`": (None, ""), "\\": (None, "statements go on below without a sign"),
 }  # fmt: skip
 
-# A word that begins statements elsewhere: advice, and the word to put in its place if any.
-FOREIGN_WORDS: dict[str, tuple[str, str | None]] = {
-    "def": ("functions are defined as `fn f(x) = 2 * x`", "fn"),
-    "function": ("functions are defined as `fn f(x) = 2 * x`", "fn"),
-    "func": ("functions are defined as `fn f(x) = 2 * x`", "fn"),
-    "fun": ("functions are defined as `fn f(x) = 2 * x`", "fn"),
-    "const": ("a name for a value is given by `let`", "let"),
-    "val": ("a name for a value is given by `let`", "let"),
-    "number": ("values have no type before their name; write `let`", "let"),
-    "float": ("values have no type before their name; write `let`", "let"),
-    "int": ("values have no type before their name; write `let`", "let"),
-    "double": ("values have no type before their name; write `let`", "let"),
-    "parameter": ("a parameter is declared by `param`", "param"),
-    "variable": ("an unknown is declared by `var`", "var"),
-    "elif": ("write `else if`", "else if"),
-    "elseif": ("write `else if`", "else if"),
-    "foreach": ("write `for i in 0..9 { … }`", "for"),
-    "while": ("programs repeat with `for i in 0..9 { … }`", None),
-    "return": ("a function is one expression: `fn f(x) = 2 * x`", None),
-    "class": ("what is made more than once is a template: `solid washer(outer = 20) { … }`", None),
-    "with": ("a structure is written `solid base { … }`", None),
-    "struct": ("a structure begins with its kind: `solid washer { … }`", None),
-    "include": ("other files are named by `import \"file.aidl\"`", "import"),
-    "use": ("other files are named by `import \"file.aidl\"`", "import"),
-    "from": ("names are imported as `import a, b from \"file.aidl\"`", None),
-    "print": ("what holds is stated by `assert`; the solved model shows every value", None),
-    "require": ("what must hold is stated by `constrain` or checked by `assert`", "constrain"),
-    "ensure": ("what must hold is stated by `constrain` or checked by `assert`", "constrain"),
-    "constraints": ("constraints stand in `constrain { … }`", "constrain"),
-    "end": ("a block ends with `}`", None),
-}  # fmt: skip
+# Words that begin statements elsewhere: advice, and the word to put in their place if any.
+_FOREIGN: tuple[tuple[str, str, str | None], ...] = (
+    ("def function func fun", "functions are defined as `fn f(x) = 2 * x`", "fn"),
+    ("const val", "a name for a value is given by `let`", "let"),
+    ("number float int double", "values have no type before their name; write `let`", "let"),
+    ("parameter", "a parameter is declared by `param`", "param"),
+    ("variable", "an unknown is declared by `var`", "var"),
+    ("elif elseif", "write `else if`", "else if"),
+    ("foreach", "write `for i in 0..9 { … }`", "for"),
+    ("while", "programs repeat with `for i in 0..9 { … }`", None),
+    ("return", "a function is one expression: `fn f(x) = 2 * x`", None),
+    ("class", "what is made more than once is a template: `solid washer(outer = 20) { … }`", None),
+    ("with", "a structure is written `solid base { … }`", None),
+    ("struct", "a structure begins with its kind: `solid washer { … }`", None),
+    ("include use", "other files are named by `import \"file.aidl\"`", "import"),
+    ("from", "names are imported as `import a, b from \"file.aidl\"`", None),
+    ("print", "what holds is stated by `assert`; the solved model shows every value", None),
+    ("require ensure", "what must hold is stated by `constrain` or checked by `assert`", "constrain"),
+    ("constraints", "constraints stand in `constrain { … }`", "constrain"),
+    ("end", "a block ends with `}`", None),
+)  # fmt: skip
+FOREIGN_WORDS = {word: (advice, right) for words, advice, right in _FOREIGN for word in words.split()}
 TWO_WAYS = frozenset({"require", "ensure"})
 """Words above that may also be meant otherwise."""
 
