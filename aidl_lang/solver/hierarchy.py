@@ -111,22 +111,20 @@ class Hierarchy:
 
     @cached_property
     def mentions(self) -> Mapping[int, frozenset[int]]:
-        """The unknowns in each constraint, by its index; found when first asked for."""
-        return _Mentions(self.problem, self._levels)
+        """The unknowns in each constraint, by its index."""
+        if (levels := self._levels) is None:
+            return _Mentions(self.problem)
+        starts = np.searchsorted(levels.constraints, np.arange(1, len(self.problem.holder)))
+        found = (frozenset(part.tolist()) for part in np.split(levels.unknowns, starts))
+        return dict(enumerate(found))
 
     @cached_property
     def _mentioned_by(self) -> dict[int, list[int]]:
         found: dict[int, list[int]] = {}
-        for index, unknown in self._mentions():
-            found.setdefault(unknown, []).append(index)
+        for index in range(len(self.problem.holder)):
+            for unknown in self.mentions[index]:
+                found.setdefault(unknown, []).append(index)
         return found
-
-    def _mentions(self) -> Iterable[tuple[int, int]]:
-        """Yields pairs of a constraint and an unknown in it, by constraint."""
-        if self._levels is not None:
-            return zip(self._levels.constraints.tolist(), self._levels.unknowns.tolist(), strict=True)
-        indices = range(len(self.problem.holder))
-        return ((index, unknown) for index in indices for unknown in self.mentions[index])
 
     def run(self, recollection: Recollection | None = None) -> None:
         """Solves the groups depth by depth, from below; recalls those that no change has reached."""
@@ -301,19 +299,14 @@ class Hierarchy:
 
 
 class _Mentions(dict[int, frozenset[int]]):
-    def __init__(self, problem: Problem, levels: Levels | None) -> None:
-        super().__init__()
-        self._problem, self._levels = problem, levels
-        if levels is not None:
-            self._starts = np.searchsorted(levels.constraints, np.arange(len(problem.holder) + 1))
+    """The unknowns in each constraint, found when asked for."""
+
+    def __init__(self, problem: Problem) -> None:
+        self._problem = problem
 
     def __missing__(self, index: int) -> frozenset[int]:
-        if self._levels is not None:
-            unknowns = self._levels.unknowns[self._starts[index] : self._starts[index + 1]].tolist()
-        else:
-            rows = self._problem.constraints[index].rows
-            unknowns = mentioned(self._problem.tape, [row.expression for row in rows])
-        found = self[index] = frozenset(unknowns)
+        rows = self._problem.constraints[index].rows
+        found = self[index] = frozenset(mentioned(self._problem.tape, [row.expression for row in rows]))
         return found
 
 
