@@ -17,7 +17,6 @@ from aidl_lang.checking.resolve import resolve
 from aidl_lang.checking.subset import adapted
 from aidl_lang.checking.symbols import IDLE, SymbolKind, audible, idle
 from aidl_lang.common.diagnostics import Diagnostic, TooLongError, has_errors, ordered, within
-from aidl_lang.common.records import record
 from aidl_lang.common.running import Later, Stopwatch, checkpoint, working
 from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.common.world import World
@@ -51,14 +50,8 @@ def front(
         return read(text, world, settings, Stopwatch())
 
 
-@record()
-class _Tries:
+class _Tries(Asked):
     """Ways to try a program again: other texts of it, other readings of its calls."""
-
-    source: SourceFile
-    world: World | None
-    params: Mapping[str, str | float | bool]
-    settings: Settings
 
     def trials(self, lowered: Lowered, solution: Solution, states_constants: bool = False) -> Trials:
         """Returns what tries other texts of the program with this problem and solution."""

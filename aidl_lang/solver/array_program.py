@@ -41,8 +41,6 @@ TIE = 1e-9
 """Difference, relative to the operands, below which rounding shall not decide between branches."""
 ALIKE = 1e-12
 """Relative difference of slopes that is rounding alone."""
-FIRST = np.ones(1, dtype=np.bool_)
-"""The mask of the first of some numbers, which always differs from the one before."""
 
 
 @record()
@@ -252,7 +250,7 @@ class ArrayFreezing:
         self._schedule, self._free = schedule, free
         self._ops, self._operands, self._levels = tape.ops, tape.operands, tape.levels
         self._values = values.copy()
-        self._branching = np.flatnonzero(_BRANCHES[tape.ops])
+        self._branching = np.flatnonzero(np.isin(tape.ops, list(BRANCHING)))
         self.choices = np.zeros(len(self._branching), dtype=np.intp)
         if choosing and len(self._branching):
             self._choose(flipped)
@@ -402,7 +400,7 @@ class ArrayFreezing:
             key = row * max(count, width) + second
             order = np.argsort(key, kind="stable")
             key = key[order]
-            starts = np.flatnonzero(np.concatenate((FIRST, key[1:] != key[:-1])))
+            starts = np.flatnonzero(np.diff(key, prepend=-1))
             unique = order[starts]
             row, second = row[unique], second[unique]
             single = len(starts) == len(order)
@@ -426,7 +424,8 @@ class ArrayFreezing:
         """Tells whether each node is not an affine function of those of its operands that vary."""
         ops, operands = self._ops[nodes], self._operands[nodes]
         first, second = (self._varies[operands[:, k]] & (operands[:, k] >= 0) for k in (0, 1))
-        curved: Bools = ~(_STRAIGHT[ops] | (ops == Op.DIV) & ~second | (ops == Op.MUL) & ~(first & second))
+        straight = np.isin(ops, [*LINEAR, IDENTITY])
+        curved: Bools = ~(straight | (ops == Op.DIV) & ~second | (ops == Op.MUL) & ~(first & second))
         return curved
 
 
@@ -452,16 +451,6 @@ class _Pending:
         if len(pieces) == 1:
             return pieces[0]
         return tuple(np.concatenate(column) for column in zip(*pieces, strict=True))
-
-
-def _table(ops: Iterable[int]) -> Bools:
-    found = np.zeros(64, dtype=np.bool_)
-    found[list(ops)] = True
-    return found
-
-
-_BRANCHES = _table(BRANCHING)
-_STRAIGHT = _table([*LINEAR, IDENTITY])
 
 
 def _distinct(numbers: Ints, count: int) -> Ints:

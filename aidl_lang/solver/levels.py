@@ -26,7 +26,7 @@ from aidl_lang.solver.array_program import ArrayFreezing, ArrayProgram, Schedule
 from aidl_lang.solver.branches import TIGHTER, Metric
 from aidl_lang.solver.expression import Bools, Floats, Ints
 from aidl_lang.solver.hierarchy import riding_depths
-from aidl_lang.solver.linear import stacked_least_norm
+from aidl_lang.solver.linear import each_once, stacked_least_norm
 from aidl_lang.solver.loosening import MOST, NAMES, STILL
 from aidl_lang.solver.newton import GAIN, POLISHED, Clock, End, System
 from aidl_lang.solver.problem import Problem, Settings, depths, violations
@@ -90,9 +90,7 @@ class Levels:
         rows = np.flatnonzero(freezing.varies(problem.rows.expression))
         row, unknown = freezing.pattern(problem.rows.expression[rows])
         key = problem.rows.constraint[rows[row]].astype(np.int64) * len(everything) + unknown
-        key.sort()
-        pairs: Ints = key[np.diff(key, prepend=-1) > 0]
-        return pairs
+        return each_once(key)
 
     def nodes(self) -> Floats:
         """Returns the value (m,) of each node of the tape at `x`."""

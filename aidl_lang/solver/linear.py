@@ -408,9 +408,7 @@ def starts_of(counts: NDArray[np.intp]) -> Ints:
 def each_once(values: NDArray[np.intp]) -> NDArray[np.intp]:
     """Returns the distinct numbers (k,) of an array, in order."""
     found = np.sort(values, axis=None)
-    if len(found) > 1:
-        found = found[np.concatenate(([True], found[1:] != found[:-1]))]
-    return found
+    return found[np.diff(found, prepend=found[:1] - 1) > 0]
 
 
 def others(count: int, left_out: Iterable[int]) -> NDArray[np.intp]:

@@ -9,6 +9,7 @@ so that a frame which moves both moves nothing in their difference.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
@@ -317,9 +318,9 @@ def applied(op: int, parts: Sequence[Form]) -> Form | None:
     numbers = [part for part in parts if isinstance(part, float)]
     if len(numbers) == len(parts):
         return evaluate(op, numbers)
-    if op == Op.MUL and numbers and _is_finite(numbers[0]):
+    if op == Op.MUL and numbers and math.isfinite(numbers[0]):
         return scaled(last if isinstance(first, float) else first, numbers[0])
-    if op == Op.DIV and isinstance(last, float) and last != 0.0 and _is_finite(1.0 / last):
+    if op == Op.DIV and isinstance(last, float) and last != 0.0 and math.isfinite(1.0 / last):
         return scaled(first, 1.0 / last)
     return None
 
@@ -345,10 +346,6 @@ def branched(op: int, parts: Sequence[Form]) -> Form | None:
 def evaluate(op: int, operands: Sequence[float]) -> float:
     """Returns the value of one operation on numbers."""
     return VALUE[op](*operands) if len(operands) > 1 else VALUE[op](operands[0], operands[0])
-
-
-def _is_finite(number: float) -> bool:
-    return number - number == 0.0
 
 
 # --- Gradients of many nodes at one place, as sparse matrices; these in their connected parts.
@@ -436,17 +433,14 @@ def linearise(tape: Tape, at: Floats, roots: Ints, among: Bools | None = None) -
         known.update(wanted)
         found = gradients(known, wanted, None if among is None else among.tolist())
         values = np.array([known.nodes[root] for root in wanted])
-        matrix = _sparse([found[root] for root in wanted])
+        columns = np.array([unknown for root in wanted for unknown in found[root]], dtype=np.intp)
+        slopes = np.array([slope for root in wanted for slope in found[root].values()])
+        counts = np.array([len(found[root]) for root in wanted], dtype=np.intp)
+        matrix = Sparse(starts_of(counts), columns, slopes)
     else:
         values, matrix = _all_at_once(tape, at, roots, among)
     sensible = np.abs(matrix.entries) < STEEPEST  # not for those that are not numbers
     return values, replace(matrix, entries=np.where(sensible, matrix.entries, 0.0))
-
-
-def _sparse(rows: Sequence[Gradient]) -> Sparse:
-    starts = np.cumsum([0, *(len(row) for row in rows)], dtype=np.intp)
-    columns = np.array([unknown for row in rows for unknown in row], dtype=np.intp)
-    return Sparse(starts, columns, np.array([slope for row in rows for slope in row.values()]))
 
 
 def _all_at_once(tape: Tape, at: Floats, roots: Ints, among: Bools | None) -> tuple[Floats, Sparse]:

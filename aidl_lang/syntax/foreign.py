@@ -23,6 +23,7 @@ from aidl_lang.syntax.automaton import (
 )
 from aidl_lang.syntax.tables import (
     END,
+    EXAMPLES,
     FOREIGN_WORDS,
     QUOTES,
     SIGNS,
@@ -34,7 +35,6 @@ from aidl_lang.syntax.tables import (
     UNKNOWN,
     VALUE_ENDS,
     Token,
-    example,
     is_open_comment,
     tokenize,
 )
@@ -596,7 +596,7 @@ def reserved_word(t: Trouble) -> SyntaxProblem | None:
         "E0104",
         f"`{word}` is a word of the language and cannot be {role}",
         t.span(token),
-        example(word),
+        EXAMPLES.get(word, ""),
         fix=replaced(f"call it `{word}_1` instead", t.span(token), f"{word}_1", is_sure=is_declared)
         if not called
         else None,

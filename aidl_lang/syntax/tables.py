@@ -427,7 +427,7 @@ FOREIGN_WORDS = {word: (advice, right) for words, advice, right in _FOREIGN for 
 TWO_WAYS = frozenset({"require", "ensure"})
 """Words above that may also be meant otherwise."""
 
-_EXAMPLES = {
+EXAMPLES = {
     "param": "`param` declares a parameter: `param w = 80`",
     "var": "`var` declares an unknown: `var gap = 5`",
     "let": "`let` names a value: `let h = w / 2`",
@@ -451,11 +451,7 @@ _EXAMPLES = {
     "assert": "`assert` checks the result: `assert a.width > 10, \"too narrow\"`",
     "todo": "`todo` marks a body that is still to be written",
 }  # fmt: skip
-
-
-def example(word: str) -> str:
-    """Returns the use of a word of the language, with an example."""
-    return _EXAMPLES.get(word, "")
+"""The use of each word of the language."""
 
 
 def describe(token: Token) -> str:
