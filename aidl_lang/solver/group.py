@@ -66,7 +66,7 @@ class Group:
 
     def __init__(self, hierarchy: Hierarchy, group: int) -> None:
         self.hierarchy, self.group = hierarchy, group
-        held = hierarchy.held_by(group)
+        held = hierarchy.held_by.get(group, [])
         self.hard = [index for index in held if hierarchy.is_hard[index]]
         self.soft = [index for index in held if not hierarchy.is_hard[index]]
         self.tiers = Tiers(hierarchy, group)

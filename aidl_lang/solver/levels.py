@@ -27,9 +27,9 @@ from aidl_lang.solver.branches import TIGHTER, Metric
 from aidl_lang.solver.expression import Bools, Floats, Ints
 from aidl_lang.solver.hierarchy import riding_depths
 from aidl_lang.solver.linear import each_once, stacked_least_norm
-from aidl_lang.solver.loosening import MOST, NAMES, STILL
+from aidl_lang.solver.loosening import MOST, NAMES, STILL, Tier, stage_name
 from aidl_lang.solver.newton import GAIN, POLISHED, Clock, End, System
-from aidl_lang.solver.problem import Problem, Settings, depths, violations
+from aidl_lang.solver.problem import Problem, Settings, StageReport, depths, violations
 from aidl_lang.solver.valuation import Sorted, components
 
 ROUNDS = 4
@@ -45,19 +45,6 @@ DEPTHS = 1 << 20
 """The factor by which a tier (kind, level) becomes one number: kind * DEPTHS + level."""
 STANDING = KINDS["own"] * DEPTHS + 1
 """The first tier whose members give way only if they have to, and are reported then."""
-
-
-@record()
-class Stage:
-    """The result of one stage for each part (p,) that it decided: the part's group, whether the stage solved
-    it, and the numbers of free unknowns and of rows.
-    """
-
-    tier: tuple[int, int]
-    groups: Ints
-    solved: Bools
-    unknowns: Ints
-    rows: Ints
 
 
 class Levels:
@@ -100,8 +87,10 @@ class Levels:
 
     # -- one depth
 
-    def solve(self, depth: int, known: Bools) -> Iterator[Stage]:
-        """Solves the groups at `depth` as far as it can, except those `known` (g,); yields its stages."""
+    def solve(self, depth: int, known: Bools) -> Iterator[tuple[Tier, StageReport]]:
+        """Solves the groups at `depth` as far as it can, except those `known` (g,); yields its stages, for
+        each part that they decided.
+        """
         problem = self.problem
         holds = self._all(self._holding(self.nodes()))
         active = self.binding & (self._holder_depth >= depth)
@@ -134,8 +123,10 @@ class Levels:
             left &= ~hopeful | hopeless
             parts = np.flatnonzero(hopeful & (solved | hopeless))
             considered = np.bincount(part, minlength=len(left))
-            stage = divmod(code, DEPTHS)
-            yield Stage(stage, group_of[parts], solved[parts], count[parts], considered[parts])
+            tier_of = divmod(code, DEPTHS)
+            columns = (column[parts].tolist() for column in (group_of, count, considered, solved))
+            for group, *decided in zip(*columns, strict=True):
+                yield tier_of, StageReport(group, stage_name(tier_of), *decided)
             if not left.any() or self.clock.expired:
                 return
 
