@@ -20,8 +20,8 @@ from aidl_lang.common.diagnostics import Diagnostic, TooLongError, has_errors, o
 from aidl_lang.common.running import Later, Stopwatch, checkpoint, working
 from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.common.world import World
-from aidl_lang.compiled import Asked, Compiled, Facts
-from aidl_lang.interp import Front, Interpretation, Settings, build, interpret, read
+from aidl_lang.compiled import Compiled, Facts
+from aidl_lang.interp import Asked, Front, Interpretation, Settings, build, interpret, read
 from aidl_lang.syntax import ast
 from aidl_lang.typecheck import Program
 from aidl_lang.typecheck import check as typecheck
@@ -95,15 +95,7 @@ class _Tries(Asked):
         self, turned: Mapping[int, int] | None = None, states_constants: bool = False
     ) -> Interpretation | None:
         """Builds the program with calls read otherwise, or conditions stated; None if wrong then."""
-        built, found = build(
-            self.source,
-            self.world,
-            self.params,
-            self.settings,
-            Stopwatch(),
-            turned=turned,
-            states_constants=states_constants,
-        )
+        built, found = build(self, Stopwatch(), turned=turned, states_constants=states_constants)
         return None if has_errors(found) else built
 
 
@@ -118,7 +110,7 @@ def check(
 ) -> list[Diagnostic]:
     """Returns every diagnostic of a program that needs no solving."""
     with working:
-        built, found = build(source, world, {}, settings, Stopwatch())
+        built, found = build(Asked(source, world, {}, settings), Stopwatch())
     return audible(found, built.allowances)
 
 
@@ -148,7 +140,7 @@ def knobs(
 ) -> tuple[tuple[Knob, ...], list[Diagnostic]]:
     """Returns the `param`s of a program in order of writing."""
     with working:
-        built, diagnostics = build(source, world, {}, settings, Stopwatch())
+        built, diagnostics = build(Asked(source, world, {}, settings), Stopwatch())
     return tuple(built.model.knobs), audible(diagnostics, built.allowances)
 
 
@@ -167,11 +159,10 @@ def compile(
     the result of `front` for this very program, it is not checked again. Raises Cancelled if the run is given
     up (see `common.running`).
     """
-    watch = Stopwatch()
+    watch, tries = Stopwatch(), _Tries(source, world, params or {}, settings)
     with working:
-        built, diagnostics = build(source, world, params or {}, settings, watch, checked)
+        built, diagnostics = build(tries, watch, checked)
         known = tuple(built.model.knobs)
-        tries = _Tries(source, world, params or {}, settings)
         if has_errors(diagnostics):
             with watch("fixes"):
                 told = audible(tries.answered(diagnostics, diagnostics, built.model), built.allowances)
@@ -386,11 +377,12 @@ class _Finish:
         return found, self.drawn.everything() if self.is_solved else []
 
     def _strict(self, found: list[Diagnostic]) -> list[Diagnostic]:
+        """Returns diagnostics, those that report that something gave way as errors if they are to be."""
         if not (self.settings.strict and self.given):
             return found
-        from aidl_lang.explaining.giving import as_error
+        from aidl_lang.explaining.trials import GAVE_WAY
 
-        return list(map(as_error, found))
+        return [replace(d, code="E0606") if d.code in GAVE_WAY else d for d in found]
 
     def _mended(self, told: list[Diagnostic], trials: Trials) -> list[Diagnostic]:
         """Returns diagnostics with the fixes that help, and with values that would fit constants."""
