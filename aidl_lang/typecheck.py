@@ -185,8 +185,6 @@ class Checker:
                     infer.known(weight, "a weight")
             case ast.Assert(test, message):
                 self._assert(test, message)
-            case _:
-                pass
 
     def _joined(self, node: ast.Equation) -> bool:
         """Reports `a = b and c == d`, which compares `a` with all of the rest. Returns whether it is that."""

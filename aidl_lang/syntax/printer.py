@@ -338,8 +338,7 @@ class _Printer:
                 message = doc(", ", expression(node.message, OR)) if node.message else doc()
                 return doc("assert ", expression(node.test, OR), message)
             case ast.For():
-                variables = ", ".join(map(name, node.variables))
-                return doc(f"for {variables} in ", self.expressions.iterable(node.iterable))
+                return self.expressions.loop(node)
             case ast.If():
                 return doc("if ", expression(node.test, OR))
             case ast.Import():

@@ -6,7 +6,7 @@ the grammar cannot exclude (a second `at`, an unknown kind), beside a node that 
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -353,17 +353,17 @@ class Builder:
 
     shape, constraint = defines(ast.ShapeDefinition), defines(ast.ConstraintDefinition)
 
-    def import_(self, at: Span, path: Token) -> ast.Import:
-        return ast.Import(self.string(self.span(path.start, path.end), path), None, (), span=at)
-
-    def import_as(self, at: Span, path: Token, name: Token) -> ast.Import:
+    def import_(
+        self, at: Span, path: Token, alias: Token | None = None, names: Sequence[Token] = ()
+    ) -> ast.Import:
         text = self.string(self.span(path.start, path.end), path)
-        return ast.Import(text, self.identifier(name), (), span=at)
+        called = None if alias is None else self.identifier(alias)
+        return ast.Import(text, called, tuple(map(self.identifier, names)), span=at)
+
+    import_as = import_
 
     def import_names(self, at: Span, *parts: Token) -> ast.Import:
-        *names, path = parts
-        text = self.string(self.span(path.start, path.end), path)
-        return ast.Import(text, None, tuple(map(self.identifier, names)), span=at)
+        return self.import_(at, parts[-1], None, parts[:-1])
 
     todo = makes(ast.Todo)
 
