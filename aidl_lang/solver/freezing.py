@@ -47,6 +47,9 @@ Root: TypeAlias = "int | tuple[int, int]"
 MANY = 400
 """Roots from which on programs work on arrays."""
 
+AnyProgram: TypeAlias = "AffineProgram | Program | ArrayProgram"
+"""Some rows as functions of their free unknowns; `linear` ones are affine."""
+
 Branch: TypeAlias = tuple[int, int]
 """A branching node and the number of its branch."""
 
@@ -61,7 +64,7 @@ class Frozen:
     steady    rows that hang on no such choice
     """
 
-    programs: Sequence[AffineProgram | Program | ArrayProgram]
+    programs: Sequence[AnyProgram]
     constant: list[int]
     branches: tuple[Branch, ...]
     steady: frozenset[int]

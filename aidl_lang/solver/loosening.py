@@ -14,7 +14,6 @@ combination of these; things without a share in it are held.
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
@@ -103,7 +102,7 @@ class Tiers:
         for index, reached in self.reached(placing, sizing):
             is_bound = all(row.relation is Relation.AT_MOST for row in constraints[index].rows)
             level = int(is_bound and index not in unmet)
-            for unknown in constraints[index].placed.intersection(itertools.chain(*reached)):
+            for unknown in constraints[index].placed & reached:
                 found[unknown] = min(level, found.get(unknown, level))
         self.placed = found
         self._known.clear()
@@ -139,11 +138,9 @@ class Tiers:
             self._everything[key] = self.scope(ENDLESS, seeds)
         return self._everything[key]
 
-    def reached(
-        self, indices: Sequence[int], sizing: Collection[int]
-    ) -> Iterator[tuple[int, list[list[int]]]]:
-        """Yields each constraint with the unknowns that change each of its rows at the current values; sizes
-        are among them only in the constraints `sizing` and in rows that no position changes.
+    def reached(self, indices: Sequence[int], sizing: Collection[int]) -> Iterator[tuple[int, set[int]]]:
+        """Yields each constraint with the unknowns that change it at the current values; sizes are among them
+        only in the constraints `sizing` and in rows that no position changes.
         """
         hierarchy = self.hierarchy
         hierarchy.refresh(indices)
@@ -160,8 +157,8 @@ class Tiers:
                     bent.append(row.expression)
         slopes.update(gradients(hierarchy.values, bent))
         for index in indices:
-            found = [slopes[row.expression] for row in hierarchy.rows([index])]
-            yield index, [[u for u, slope in gradient.items() if abs(slope) > FLAT] for gradient in found]
+            found = (slopes[row.expression].items() for row in hierarchy.rows([index]))
+            yield index, {u for gradient in found for u, slope in gradient if abs(slope) > FLAT}
 
     def is_dear(self, unknown: int) -> bool:
         """Tells whether a move of an unknown is reported: that of a kept size, of what rides along, and of a
