@@ -120,7 +120,9 @@ class _Reader:
             token = tokens[position]
             if token.kind == END and not to_end:
                 return ()
-            if self.passed_braces and token.kind == "}" and self._ends_passed_block():
+            passed = self.passed_braces
+            if token.kind == "}" and passed and passed[-1] == automaton.open_blocks():
+                passed.pop()
                 token = tokens[position] = Token(";", "", token.start, token.end)
             if token.kind == "-" and self._is_item(position):
                 self._begin_item(position)
@@ -228,12 +230,6 @@ class _Reader:
         """Returns the kinds of the brackets opened since a token and still open, the outermost first."""
         start = self.tokens[begin].start
         return [t.kind for t in self.automaton.open_brackets() if t.start >= start]
-
-    def _ends_passed_block(self) -> bool:
-        if self.automaton.open_blocks() == self.passed_braces[-1]:
-            self.passed_braces.pop()
-            return True
-        return False
 
     def _skip(self, position: int, with_block: bool) -> int:
         """Leaves out the statement under way. Returns the position where the next one may begin.

@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
 from aidl_lang.solver.expression import Floats
-from aidl_lang.solver.linear import DampedSteps, Matrix, nearest, with_slacks
+from aidl_lang.solver.linear import DampedSteps, Matrix, nearest
 
 if TYPE_CHECKING:
     from aidl_lang.solver.freezing import AnyProgram
@@ -147,7 +147,8 @@ class System:
             return self._constant_jacobian
         matrix = self.program.jacobian(self._per_row, self.scale)
         if self._slack is not None:
-            matrix = with_slacks(matrix, self._slack)
+            slack = -self._slack
+            matrix = np.hstack((matrix, slack)) if isinstance(matrix, np.ndarray) else matrix.beside(slack)
         if self.linear:
             self._constant_jacobian = matrix
         return matrix

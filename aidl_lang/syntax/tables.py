@@ -97,7 +97,8 @@ def built() -> bytes:
         del memo[place["@"]]  # four fifths of it say what is alike in all rules
     states, sets, end = _states(made)
     data["options"] = options
-    data["parser"]["parser"] = {"tokens": {}, "states": {}, "start_states": _at(0), "end_states": _at(end)}
+    both = {"start_states": {"module": 0}, "end_states": {"module": end}}
+    data["parser"]["parser"] = {"tokens": {}, "states": {}, **both}
     # Comments are no tokens to the grammar, but the printer needs them.
     space, *comments = data["parser"]["lexer_conf"]["ignore"]
     data["parser"]["lexer_conf"]["ignore"] = [space]
@@ -190,10 +191,6 @@ def _maker(rule: Rule) -> Callable[[Any, list[Any]], Reduced]:
         return Reduced(value, start, end)
 
     return make
-
-
-def _at(state: int) -> dict[str, int]:
-    return {"module": state}
 
 
 def _types(made: Lark) -> dict[str, str]:

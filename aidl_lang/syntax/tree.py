@@ -218,8 +218,10 @@ class Builder:
     def block(self, at: Span, *statements: ast.Statement) -> ast.Block:
         return ast.Block(statements, span=at)
 
-    def module(self, at: Span, *statements: ast.Statement) -> tuple[ast.Statement, ...]:
-        return statements
+    def module(self, at: Span, *items: Any) -> tuple[Any, ...]:
+        return items
+
+    parameters = module
 
     # --- Structures and geometry ---
 
@@ -281,9 +283,6 @@ class Builder:
 
     def index(self, at: Span, *values: ast.Expression) -> tuple[str, tuple[ast.Expression, ...]]:
         return "index", values
-
-    def parameters(self, at: Span, *items: ast.Parameter) -> tuple[ast.Parameter, ...]:
-        return items
 
     def parameter(self, at: Span, name: Token, *parts: Any) -> ast.Parameter:
         kind = next((p for p in parts if isinstance(p, ast.Identifier)), None)
