@@ -11,12 +11,11 @@ from aidl_lang.building.model import Knob, Model
 from aidl_lang.common.diagnostics import AidlError, Diagnostic, within
 from aidl_lang.common.records import record
 from aidl_lang.common.running import Later, OutOfTime, limited_to, working
-from aidl_lang.common.source import SourceFile, Span
+from aidl_lang.common.source import Span
 
 if TYPE_CHECKING:
     from aidl_lang.building.expression import Evaluator
     from aidl_lang.checking.symbols import Allowance
-    from aidl_lang.common.world import World
     from aidl_lang.explaining.failures import Conflict
     from aidl_lang.export import Exporter
     from aidl_lang.export.comparison import Comparison
@@ -26,7 +25,7 @@ if TYPE_CHECKING:
     from aidl_lang.geometry.drawing import Drawing
     from aidl_lang.geometry.solved import SolvedModel
     from aidl_lang.geometry.survey import Part, Survey
-    from aidl_lang.interp import Settings
+    from aidl_lang.interp import Asked
     from aidl_lang.solver.problem import StageReport
 
 
@@ -38,16 +37,6 @@ def _never(span: Span) -> bool:
 
 
 _LEFT_BEHIND = {"conflicts": tuple, "follows": _never, "built": None, "evaluate": None, "on_drawing": list}
-
-
-@record()
-class Asked:
-    """What a program was compiled of."""
-
-    source: SourceFile
-    world: World | None
-    params: Mapping[str, str | float | bool]
-    settings: Settings
 
 
 @record()

@@ -129,6 +129,16 @@ class Settings:
         return Settings(variant=variant, strict=strict, solving=solving)
 
 
+@record()
+class Asked:
+    """What a program is compiled of."""
+
+    source: SourceFile
+    world: World | None
+    params: Mapping[str, str | float | bool]
+    settings: Settings
+
+
 Front: TypeAlias = tuple[Program, list[Diagnostic]]
 
 
@@ -149,22 +159,20 @@ def read(text: SourceFile | Parsed, world: World | None, settings: Settings, wat
 
 
 def build(
-    source: SourceFile,
-    world: World | None,
-    params: Mapping[str, str | float | bool],
-    settings: Settings,
+    asked: Asked,
     watch: Stopwatch,
     checked: Front | None = None,
     turned: Mapping[int, int] | None = None,
     states_constants: bool = False,
 ) -> tuple[Interpretation, list[Diagnostic]]:
     """Builds the Model of a text. Returns it with every diagnostic that does not need solving."""
-    program, found = checked or read(source, world, settings, watch)
+    settings = asked.settings
+    program, found = checked or read(asked.source, asked.world, settings, watch)
     if is_too_many(found):  # nothing of the model would be used or reported
         unbuilt = Interpretation(Model(_nothing()), [], {})
         return unbuilt, within_limit(ordered(adapted(found, settings.variant)))
     static = list(found)
     with watch("interpret"):
-        built = interpret(program, params, settings.building, turned, states_constants)
+        built = interpret(program, asked.params, settings.building, turned, states_constants)
     static += [violation.diagnostic(built.written) for violation in program.violations]
     return built, within_limit(ordered(adapted([*static, *built.diagnostics], settings.variant)))

@@ -16,15 +16,15 @@ from aidl_lang.common.records import record
 from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.syntax import ast
 from aidl_lang.syntax.automaton import CLOSE_BLOCK, LONGEST, Automaton, Checkpoint, Trouble
-from aidl_lang.syntax.rewriting import begins_with_sign, lines_joined_by_sign, lists_as_statements, understood
-from aidl_lang.syntax.tables import (
-    END,
-    Token,
-    Tokens,
-    is_open_comment,
-    tokenize,
+from aidl_lang.syntax.rewriting import (
+    begins_with_sign,
+    lines_joined_by_sign,
+    lists_as_statements,
+    spaced_call,
+    understood,
 )
-from aidl_lang.syntax.tree import Builder, Nodes
+from aidl_lang.syntax.tables import END, STATEMENT_WORDS, Token, Tokens, is_open_comment, tokenize
+from aidl_lang.syntax.tree import Builder
 
 
 @record()
@@ -93,14 +93,6 @@ def _read(source: SourceFile, limits: TextLimits, closed: tuple[int, ...] = ()) 
     return Parsed(module, ordered(diagnostics)), tokens.tokens
 
 
-def _spaced_calls(source: SourceFile, tokens: Tokens) -> list[Diagnostic]:
-    if not tokens.spaced_calls:
-        return []
-    from aidl_lang.syntax.errors import spaced_call
-
-    return [spaced_call(source, token) for token in tokens.spaced_calls]
-
-
 class _Reader:
     """Reads one file: feeds the automaton, and mends or skips at a token that cannot stand."""
 
@@ -110,13 +102,12 @@ class _Reader:
         self.source = source
         self.tokens = tokens.tokens
         self.limits = limits
-        self.automaton = Automaton()
-        self.builder = builder
-        self.diagnostics = _spaced_calls(source, tokens)
+        self.automaton = Automaton(builder)
+        self.diagnostics = [spaced_call(source, token) for token in tokens.spaced_calls]
         self.diagnostics += understood(source, self.tokens)
         self.diagnostics += lists_as_statements(source, self.tokens)
         self.automaton.enter_block()
-        self.last = Checkpoint(0, self.automaton.states[:], self.automaton.values[:], [0])
+        self.last = Checkpoint(0, self.automaton.states[:], self.automaton.values[:], [0], 0)
         self.repairs = 0
         self.may_be_deep = False
         self.passed_braces: list[int] = []  # for each `{` passed over, how many blocks were open around it
@@ -129,7 +120,9 @@ class _Reader:
             token = tokens[position]
             if token.kind == END and not to_end:
                 return ()
-            if self.passed_braces and token.kind == "}" and self._ends_passed_block():
+            passed = self.passed_braces
+            if token.kind == "}" and passed and passed[-1] == automaton.open_blocks():
+                passed.pop()
                 token = tokens[position] = Token(";", "", token.start, token.end)
             if token.kind == "-" and self._is_item(position):
                 self._begin_item(position)
@@ -140,7 +133,7 @@ class _Reader:
                 position = self._recover(position)
                 continue
             if token.kind == END:
-                return self._statements()
+                return automaton.made
             if automaton.began_statement:
                 self.last = automaton.checkpoint(position)
                 self.repairs = 0
@@ -152,11 +145,6 @@ class _Reader:
                 if len(automaton.states) > 4 * limits.max_nesting:
                     return self._stop(_too_deep(Span(self.source, token.start, token.end), limits))
             position += 1
-
-    def _statements(self) -> tuple[ast.Statement, ...]:
-        assert self.automaton.tree is not None
-        statements: tuple[ast.Statement, ...] = Nodes(self.builder).transform(self.automaton.tree)
-        return statements
 
     def _is_item(self, position: int) -> bool:
         """Tells whether a `-` begins a constraint below one that is whole."""
@@ -178,7 +166,7 @@ class _Reader:
         while not self.automaton.feed(Token(END, "", end, end)):
             if not self.automaton.feed(Token("}", "", end, end)):
                 self.automaton.drop_statement()
-        return self._statements()
+        return self.automaton.made
 
     # --- Recovery ---
 
@@ -242,12 +230,6 @@ class _Reader:
         """Returns the kinds of the brackets opened since a token and still open, the outermost first."""
         start = self.tokens[begin].start
         return [t.kind for t in self.automaton.open_brackets() if t.start >= start]
-
-    def _ends_passed_block(self) -> bool:
-        if self.automaton.open_blocks() == self.passed_braces[-1]:
-            self.passed_braces.pop()
-            return True
-        return False
 
     def _skip(self, position: int, with_block: bool) -> int:
         """Leaves out the statement under way. Returns the position where the next one may begin.
@@ -324,12 +306,7 @@ class _Reader:
         )
 
 
-_CERTAIN_WORDS = frozenset(
-    (
-        *("param", "var", "let", "constrain", "prefer", "assert", "import", "fn", "shape", "constraint"),
-        *("alias", "template", "construction", "todo"),
-    )
-)
+_CERTAIN_WORDS = STATEMENT_WORDS - {"for", "if"}
 _POSSIBLE_STARTS = frozenset(["NAME", "CALL", "NUMBER", "(", "@", "for", "if"])
 
 

@@ -17,12 +17,11 @@ from aidl_lang.checking.resolve import resolve
 from aidl_lang.checking.subset import adapted
 from aidl_lang.checking.symbols import IDLE, SymbolKind, audible, idle
 from aidl_lang.common.diagnostics import Diagnostic, TooLongError, has_errors, ordered, within
-from aidl_lang.common.records import record
 from aidl_lang.common.running import Later, Stopwatch, checkpoint, working
 from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.common.world import World
-from aidl_lang.compiled import Asked, Compiled, Facts
-from aidl_lang.interp import Front, Interpretation, Settings, build, interpret, read
+from aidl_lang.compiled import Compiled, Facts
+from aidl_lang.interp import Asked, Front, Interpretation, Settings, build, interpret, read
 from aidl_lang.syntax import ast
 from aidl_lang.typecheck import Program
 from aidl_lang.typecheck import check as typecheck
@@ -51,14 +50,8 @@ def front(
         return read(text, world, settings, Stopwatch())
 
 
-@record()
-class _Tries:
+class _Tries(Asked):
     """Ways to try a program again: other texts of it, other readings of its calls."""
-
-    source: SourceFile
-    world: World | None
-    params: Mapping[str, str | float | bool]
-    settings: Settings
 
     def trials(self, lowered: Lowered, solution: Solution, states_constants: bool = False) -> Trials:
         """Returns what tries other texts of the program with this problem and solution."""
@@ -102,15 +95,7 @@ class _Tries:
         self, turned: Mapping[int, int] | None = None, states_constants: bool = False
     ) -> Interpretation | None:
         """Builds the program with calls read otherwise, or conditions stated; None if wrong then."""
-        built, found = build(
-            self.source,
-            self.world,
-            self.params,
-            self.settings,
-            Stopwatch(),
-            turned=turned,
-            states_constants=states_constants,
-        )
+        built, found = build(self, Stopwatch(), turned=turned, states_constants=states_constants)
         return None if has_errors(found) else built
 
 
@@ -125,7 +110,7 @@ def check(
 ) -> list[Diagnostic]:
     """Returns every diagnostic of a program that needs no solving."""
     with working:
-        built, found = build(source, world, {}, settings, Stopwatch())
+        built, found = build(Asked(source, world, {}, settings), Stopwatch())
     return audible(found, built.allowances)
 
 
@@ -155,7 +140,7 @@ def knobs(
 ) -> tuple[tuple[Knob, ...], list[Diagnostic]]:
     """Returns the `param`s of a program in order of writing."""
     with working:
-        built, diagnostics = build(source, world, {}, settings, Stopwatch())
+        built, diagnostics = build(Asked(source, world, {}, settings), Stopwatch())
     return tuple(built.model.knobs), audible(diagnostics, built.allowances)
 
 
@@ -174,11 +159,10 @@ def compile(
     the result of `front` for this very program, it is not checked again. Raises Cancelled if the run is given
     up (see `common.running`).
     """
-    watch = Stopwatch()
+    watch, tries = Stopwatch(), _Tries(source, world, params or {}, settings)
     with working:
-        built, diagnostics = build(source, world, params or {}, settings, watch, checked)
+        built, diagnostics = build(tries, watch, checked)
         known = tuple(built.model.knobs)
-        tries = _Tries(source, world, params or {}, settings)
         if has_errors(diagnostics):
             with watch("fixes"):
                 told = audible(tries.answered(diagnostics, diagnostics, built.model), built.allowances)
@@ -393,11 +377,12 @@ class _Finish:
         return found, self.drawn.everything() if self.is_solved else []
 
     def _strict(self, found: list[Diagnostic]) -> list[Diagnostic]:
+        """Returns diagnostics, those that report that something gave way as errors if they are to be."""
         if not (self.settings.strict and self.given):
             return found
-        from aidl_lang.explaining.giving import as_error
+        from aidl_lang.explaining.trials import GAVE_WAY
 
-        return list(map(as_error, found))
+        return [replace(d, code="E0606") if d.code in GAVE_WAY else d for d in found]
 
     def _mended(self, told: list[Diagnostic], trials: Trials) -> list[Diagnostic]:
         """Returns diagnostics with the fixes that help, and with values that would fit constants."""

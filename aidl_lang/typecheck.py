@@ -129,13 +129,17 @@ class Checker:
 
     def run(self, module: ast.Module) -> None:
         self.infer.homes = (module,)
-        self._statements(module.statements)
-
-    def _statements(self, statements: tuple[ast.Statement, ...]) -> None:
-        for statement in statements:
+        for statement in module.statements:
             self._statement(statement)
 
-    def _statement(self, node: ast.Statement) -> None:
+    def _block(self, block: ast.Block, among_constraints: bool = False) -> None:
+        for statement in block.statements:
+            if among_constraints and isinstance(statement, ast.ExpressionStatement):
+                check_item(self.infer, statement.value)
+            else:
+                self._statement(statement, among_constraints)
+
+    def _statement(self, node: ast.Statement, among_constraints: bool = False) -> None:
         match node:
             case ast.Structure():
                 self._structure(node)
@@ -143,11 +147,11 @@ class Checker:
                 self._definition(node)
             case ast.For(iterable=iterable, body=body):
                 self.infer.iterable(iterable)
-                self._statements(body.statements)
+                self._block(body, among_constraints)
             case ast.If(test, then, otherwise):
                 self.infer.test(test)
-                self._statements(then.statements)
-                self._statements(otherwise.statements if otherwise else ())
+                for block in filter(None, (then, otherwise)):
+                    self._block(block, among_constraints)
             case ast.Assign():
                 self._attributes(node.attributes)
                 self._indices(node.indices)
@@ -156,7 +160,7 @@ class Checker:
                 self._placement(node.placement)
             case ast.Constrain(items):
                 check_empty(self.infer, node)
-                self._items(items)
+                self._block(items, among_constraints=True)
             case _:
                 self._simple(node)
 
@@ -181,8 +185,6 @@ class Checker:
                     infer.known(weight, "a weight")
             case ast.Assert(test, message):
                 self._assert(test, message)
-            case _:
-                pass
 
     def _joined(self, node: ast.Equation) -> bool:
         """Reports `a = b and c == d`, which compares `a` with all of the rest. Returns whether it is that."""
@@ -217,10 +219,8 @@ class Checker:
         match node:
             case ast.FunctionDefinition(value=value):
                 infer.fact(value)
-            case ast.ConstraintDefinition(body=body):
-                self._items(body)
             case _:
-                self._statements(node.body.statements)
+                self._block(node.body, isinstance(node, ast.ConstraintDefinition))
         infer.homes = before
 
     def _default(self, parameter: ast.Parameter) -> None:
@@ -236,26 +236,6 @@ class Checker:
                 f"`{parameter.name.text}` is {a(wanted)}, and its default is {a(fact.type)}",
                 parameter.default,
             )
-
-    def _items(self, block: ast.Block) -> None:
-        for item in block.statements:
-            if isinstance(item, ast.ExpressionStatement):
-                check_item(self.infer, item.value)
-            else:
-                self._item(item)
-
-    def _item(self, item: ast.Statement) -> None:
-        match item:
-            case ast.For(iterable=iterable, body=body):
-                self.infer.iterable(iterable)
-                self._items(body)
-            case ast.If(test, then, otherwise):
-                self.infer.test(test)
-                self._items(then)
-                if otherwise is not None:
-                    self._items(otherwise)
-            case _:
-                self._statement(item)
 
     # --- What statements want ----------------------------------------------------------------------
 

@@ -12,7 +12,7 @@ from functools import cached_property
 
 from aidl_lang.building.expression import Expression, Unknown, unknowns
 from aidl_lang.building.lower import Lowered
-from aidl_lang.building.model import Comparison, Constraint, Structure, chain
+from aidl_lang.building.model import Constraint, chain
 from aidl_lang.building.values import Num
 from aidl_lang.building.wording import Wording, rounding
 from aidl_lang.checking.units import ANGLE, LENGTH
@@ -396,8 +396,9 @@ class Explanation:
 
     def _rigid(self) -> dict[Span, None]:
         """Returns the places where parts that the parties speak of are said to be `@rigid`."""
-        named = (n for party in self.parties for c in party.stated.comparisons for n in _structures(c))
-        spans = {s.span: None for each in named for s in chain(each) if "rigid" in s.attributes and s.span}
+        comparisons = [c for party in self.parties for c in party.stated.comparisons]
+        spoken = (s for c in comparisons for s in (*c.boxes, *(u.owner for u in unknowns([c.left, c.right]))))
+        spans = {s.span: None for each in spoken for s in chain(each) if "rigid" in s.attributes and s.span}
         found = [(span, re.search(r"@rigid\b(\s*\([^)]*\))?", span.text)) for span in spans]
         return {Span(s.source, s.start + m.start(), s.start + m.end()): None for s, m in found if m}
 
@@ -442,11 +443,6 @@ def _apart(party: _StatedMember, gap: float) -> tuple[str, ...]:
     if near := rounding(written[1] + gap, written[1]):
         return near
     return (f"given the others, `{left}` is {short(abs(gap))} {more} than `{right}`",)
-
-
-def _structures(comparison: Comparison) -> Iterator[Structure]:
-    yield from comparison.boxes
-    yield from (u.owner for u in unknowns([comparison.left, comparison.right]))
 
 
 def _name(parties: Sequence[_StatedMember]) -> str:

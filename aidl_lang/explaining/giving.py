@@ -18,7 +18,6 @@ from aidl_lang.common.records import record
 from aidl_lang.common.source import Span
 from aidl_lang.explaining.failures import NAMED
 from aidl_lang.explaining.remedies import left_out
-from aidl_lang.explaining.trials import GAVE_WAY
 from aidl_lang.geometry.solved import Change, SolvedModel
 from aidl_lang.solver import Constraint as SolverConstraint
 from aidl_lang.solver import Problem, Relation, Settings, Solution, Status, solve
@@ -96,11 +95,6 @@ def _speaking_of(unknown: Unknown, lowered: Lowered) -> Iterator[Constraint]:
         spoken = (u.holder for part in stated.comparisons for u in part.spoken_of)
         if not stated.is_inherent and unknown.holder in spoken:
             yield stated
-
-
-def as_error(note: Diagnostic) -> Diagnostic:
-    """Returns a diagnostic, as an error if it reports that something gave way."""
-    return replace(note, code="E0606") if note.code in GAVE_WAY else note
 
 
 def giving_notes(given: Sequence[GaveWay], model: SolvedModel) -> Iterator[Diagnostic]:

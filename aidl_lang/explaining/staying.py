@@ -33,17 +33,16 @@ _FORMED = frozenset({"path", "polygon", "polyline", "spline"})
 
 Naming = Mapping[Unknown | Structure, Sequence[Constraint]]
 """The constraints that mention an unknown, or the box of a structure."""
-Sides = tuple[float, float, float, float]
+Sides = tuple[float, ...]
+"""Left, bottom, right, top."""
 
 
-def staying_notes(
-    root: Structure, lowered: Lowered, solution: Solution, naming: Naming
+def _staying_notes(
+    root: Structure, before: Mapping[Unknown, float], after: Mapping[Unknown, float], naming: Naming
 ) -> Iterator[Diagnostic]:
     """Yields a warning for each thing that moved away from what was drawn inside it and no constraint names,
     and for each way that lost its form because constraints took both its ends.
     """
-    after = dict(zip(lowered.unknowns, map(float, solution.values), strict=True))
-    before = dict(zip(lowered.unknowns, map(float, lowered.problem.initial), strict=True))
     moved = {u for u in after if abs(after[u] - before[u]) > _STILL}
     now = Evaluator(after)
     for structure in root.walk():
@@ -77,13 +76,11 @@ class _Seen:
 
     @cached_property
     def written(self) -> Sides:
-        left, bottom, right, top = (side.value for side in self._sides)
-        return left, bottom, right, top
+        return tuple(side.value for side in self._sides)
 
     @cached_property
     def solved(self) -> Sides:
-        left, bottom, right, top = map(self.now, self._sides)
-        return left, bottom, right, top
+        return tuple(map(self.now, self._sides))
 
     @cached_property
     def _sides(self) -> Sequence[Expression]:
@@ -116,9 +113,8 @@ def _middle(sides: Sides) -> tuple[float, float]:
 
 
 def _holds(outer: Sides, inner: Sides) -> bool:
-    return all(o <= i for o, i in zip(outer[:2], inner[:2], strict=True)) and all(
-        o >= i for o, i in zip(outer[2:], inner[2:], strict=True)
-    )
+    (left, bottom, right, top), (x_min, y_min, x_max, y_max) = outer, inner
+    return left <= x_min and bottom <= y_min and right >= x_max and top >= y_max
 
 
 def _left_inside(seen: Sequence[_Seen], here: Structure) -> Iterator[Diagnostic]:
@@ -283,7 +279,7 @@ def leaving_notes(root: Structure, lowered: Lowered, solution: Solution) -> Iter
         left = [detail for detail in left if detail.moved > _FAR * extent]
         if left and stayed:
             yield _left_outside(structure, left, stayed, _fits(structure, lowered))
-    yield from staying_notes(root, lowered, solution, naming)
+    yield from _staying_notes(root, written, solved, naming)
 
 
 def _fits(structure: Structure, lowered: Lowered) -> bool:

@@ -115,44 +115,26 @@ class Mobility:
         self.total = None
 
 
-@record()
-class Watch:
-    """The visibility of observables: pairs of a group (p,) and a row (p,) of their Jacobian, each once."""
-
-    groups: Ints
-    rows: Ints
-
-
-def mobility(
-    equations: Sparse, known: Bools, observables: Sparse, watch: Watch, groups: int, motions: Motions
-) -> Mobility:
-    """Counts motions, and lists them in `motions`.
+class _Parts:
+    """The unknowns that observables and equations link, numbered by part, with their rows.
 
     equations   rows over the unknowns that may move, parts of unit rows
     known       those which are independent of one another for sure
     observables rows over the same, in units of a typical motion, none of them zero
+    watching, watched: pairs of a group (p,) and an observable (p,) that it sees, each once
     """
-    unknowns = len(motions.scale)
-    found = Mobility(np.zeros(groups, dtype=np.intp), np.zeros(unknowns, dtype=np.bool_), motions)
-    if not len(observables):
-        return found
-    parts = _Parts(equations, known, observables, watch, unknowns)
-    for members in _lots(parts.rows.count, parts.columns.count, parts.seen.count):
-        if parts.columns.count[members[0]] > LARGE:
-            for part in members.tolist():
-                _settle_large(parts, part, found)
-        else:
-            _settle_small(parts, members, found)
-    return found
-
-
-class _Parts:
-    """The unknowns that observables and equations link, numbered by part, with their rows."""
 
     def __init__(
-        self, equations: Sparse, known: Bools, observables: Sparse, watch: Watch, unknowns: int
+        self,
+        equations: Sparse,
+        known: Bools,
+        observables: Sparse,
+        watching: Ints,
+        watched: Ints,
+        unknowns: int,
     ) -> None:
-        self.equations, self.known, self.observables, self.watch = equations, known, observables, watch
+        self.equations, self.known, self.observables = equations, known, observables
+        self.watching, self.watched = watching, watched
         links = [np.concatenate(ends) for ends in zip(equations.links, observables.links, strict=True)]
         label = connected(links[0], links[1], unknowns)
         seen = each_once(label[observables.columns])
@@ -165,14 +147,14 @@ class _Parts:
         self.rows = Sorted(self.equation_part, len(seen))
         self.observable_part = _part_of_rows(observables, self.part)
         self.seen = Sorted(self.observable_part, len(seen))
-        self.pairs = Sorted(self.observable_part[watch.rows], len(seen))
+        self.pairs = Sorted(self.observable_part[watched], len(seen))
 
     def local(self, matrix: Sparse) -> Sparse:
         """Returns the matrix with its columns numbered within their part."""
         return Sparse(matrix.starts, self.columns.place[matrix.columns], matrix.entries)
 
     def groups(self, part: int) -> Ints:
-        return each_once(self.watch.groups[self.pairs.members(part)])
+        return each_once(self.watching[self.pairs.members(part)])
 
 
 def _part_of_rows(matrix: Sparse, part: Ints) -> Ints:
@@ -211,10 +193,10 @@ def _settle_small(parts: _Parts, members: Ints, found: Mobility) -> None:
 
 def _by_group(parts: _Parts, slot: Ints, velocities: Floats, total: Ints) -> tuple[Ints, Ints]:
     """Returns the groups that see some of a part in `slot`, and the rank of the motions that each sees."""
-    part = parts.observable_part[parts.watch.rows]
+    part = parts.observable_part[parts.watched]
     pairs = np.flatnonzero(slot[part] >= 0)
-    owner, group, row = slot[part[pairs]], parts.watch.groups[pairs], parts.watch.rows[pairs]
-    count = int(parts.watch.groups.max()) + 1
+    owner, group, row = slot[part[pairs]], parts.watching[pairs], parts.watched[pairs]
+    count = int(parts.watching.max()) + 1
     keys, key = np.unique(owner.astype(np.int64) * count + group, return_inverse=True)
     if len(keys) == len(total):
         return (keys % count).astype(np.intp), total[keys // count]
@@ -260,8 +242,8 @@ def _large(parts: _Parts, part: int, groups: Ints) -> tuple[Floats | None, Bools
     samples /= np.abs(samples).max()
     moving = np.abs(samples).max(axis=1) > RANK
     pairs = parts.pairs.members(part)
-    group = np.searchsorted(groups, parts.watch.groups[pairs])
-    seen = parts.seen.place[parts.watch.rows[pairs]]
+    group = np.searchsorted(groups, parts.watching[pairs])
+    seen = parts.seen.place[parts.watched[pairs]]
     if total <= SAMPLES - SPARE:
         basis, sigma, _ = np.linalg.svd(samples, full_matrices=False)
         if np.count_nonzero(sigma > RANK) != total:
@@ -453,10 +435,21 @@ def _mobility(
     jacobian = rows.only(movable[rows.columns])
     known = clear & (np.diff(jacobian.starts) == np.diff(rows.starts))
     pins = riding.pins(problem, jacobian)
-    observables, watch = matrix.take(distinct), Watch(group.astype(np.intp), row_seen.astype(np.intp))
     motions = Motions(problem.scale, places, row, riding.anchor[groups] if len(groups) else groups)
+    unknowns, degrees = len(problem.initial), np.zeros(len(problem.parent), dtype=np.intp)
+    found = Mobility(degrees, np.zeros(unknowns, dtype=np.bool_), motions)
+    if not len(distinct):
+        return found
     known = np.concatenate((known, np.ones(len(pins), dtype=np.bool_)))
-    return mobility(jacobian.above(pins), known, observables, watch, len(problem.parent), motions)
+    observables, watching, watched = matrix.take(distinct), group.astype(np.intp), row_seen.astype(np.intp)
+    parts = _Parts(jacobian.above(pins), known, observables, watching, watched, unknowns)
+    for members in _lots(parts.rows.count, parts.columns.count, parts.seen.count):
+        if parts.columns.count[members[0]] > LARGE:
+            for part in members.tolist():
+                _settle_large(parts, part, found)
+        else:
+            _settle_small(parts, members, found)
+    return found
 
 
 def _distinct(matrix: Sparse) -> tuple[Ints, Ints]:

@@ -8,7 +8,7 @@ there are, and in which order they are visited, is laid out once.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from functools import cached_property
 from itertools import pairwise
 
@@ -41,8 +41,6 @@ TIE = 1e-9
 """Difference, relative to the operands, below which rounding shall not decide between branches."""
 ALIKE = 1e-12
 """Relative difference of slopes that is rounding alone."""
-FIRST = np.ones(1, dtype=np.bool_)
-"""The mask of the first of some numbers, which always differs from the one before."""
 
 
 @record()
@@ -80,13 +78,11 @@ class ArrayProgram:
     _inputs: Ints
     _batches: list[Batch]
     _steps: list[Step]
-    _values: Floats
-    _slopes: Floats
-    _find_plain: Callable[[], Bools]
+    _freezing: ArrayFreezing
 
     @property
     def plain(self) -> Bools:
-        return self._find_plain()
+        return self._freezing.plain[self.roots]
 
     @property
     def linear(self) -> bool:
@@ -98,7 +94,7 @@ class ArrayProgram:
 
     def residuals(self, x: Floats) -> Floats:
         """Returns the values (r,) of the rows at the unknowns `x` (k,)."""
-        values = self._values
+        values = self._freezing.values
         values[self._inputs] = x
         with np.errstate(all="ignore"):
             for batch in self._batches:
@@ -126,7 +122,7 @@ class ArrayProgram:
 
     def entries(self) -> Floats:
         """Returns the partial derivatives in the order of the pattern, where `residuals` was last found."""
-        values, slopes = self._values, self._slopes
+        values, slopes = self._freezing.values, self._freezing.slopes
         stride = len(values)
         with np.errstate(all="ignore"):
             for batch in self._batches:
@@ -251,8 +247,8 @@ class ArrayFreezing:
         tape = schedule.tape
         self._schedule, self._free = schedule, free
         self._ops, self._operands, self._levels = tape.ops, tape.operands, tape.levels
-        self._values = values.copy()
-        self._branching = np.flatnonzero(_BRANCHES[tape.ops])
+        self.values = values.copy()
+        self._branching = np.flatnonzero(np.isin(tape.ops, list(BRANCHING)))
         self.choices = np.zeros(len(self._branching), dtype=np.intp)
         if choosing and len(self._branching):
             self._choose(flipped)
@@ -260,13 +256,13 @@ class ArrayFreezing:
             self._append(differences)
         self._varies = schedule.varying(free, self._operands)
         self._laid_out: tuple[Ints, _Layout] | None = None
-        self._slopes = np.ones(4 * len(self._values) + 1)
+        self.slopes = np.ones(4 * len(self.values) + 1)
 
     def branches(self, roots: Ints) -> list[tuple[int, int]]:
         """Returns the branching nodes below these (r,) through active branches, and the choice at each."""
-        below = np.zeros(len(self._values) + 1, dtype=np.bool_)  # the last one is for missing operands
+        below = np.zeros(len(self.values) + 1, dtype=np.bool_)  # the last one is for missing operands
         below[roots] = True
-        added = np.arange(len(self._schedule.tape), len(self._values))
+        added = np.arange(len(self._schedule.tape), len(self.values))
         for nodes in (added, *reversed(self._schedule.by_level)):
             below[self._operands[nodes[below[nodes]]]] = True
         taken = below[self._branching]
@@ -284,7 +280,7 @@ class ArrayFreezing:
     # -- branches
 
     def _choose(self, flipped: Collection[int]) -> None:
-        nodes, values = self._branching, self._values
+        nodes, values = self._branching, self.values
         ops = self._ops[nodes]
         operands = self._operands[nodes].astype(np.intp)
         first, second = values[operands[:, 0]], values[operands[:, 1]]
@@ -311,23 +307,23 @@ class ArrayFreezing:
         operands = np.full((len(pairs), 4), -1, dtype=np.int32)
         operands[:, :2] = pairs
         operands[from_zero, 0], operands[from_zero, 1] = pairs[from_zero, 1], -1
-        values = self._values[pairs]
+        values = self.values[pairs]
         values[from_zero, 0] = 0.0
         self._ops = np.append(self._ops, np.where(from_zero, Op.NEG, Op.SUB).astype(np.int8))
         self._operands = np.vstack((self._operands, operands))
         top = np.full(len(pairs), self._levels.max(initial=0) + 1, dtype=np.int32)
         self._levels = np.append(self._levels, top)
-        self._values = np.append(self._values, values[:, 0] - values[:, 1])
+        self.values = np.append(self.values, values[:, 0] - values[:, 1])
 
     @cached_property
-    def _plain(self) -> Bools:
+    def plain(self) -> Bools:
         """The mask (m,) of nodes that are affine functions of the free unknowns whatever branches are taken.
 
         The least of several coordinates of one rigid part is such a function, as all of them move alike: two
         branches are taken for one if they change alike in a direction in which no two unknowns change alike.
         """
         tape, schedule = self._schedule.tape, self._schedule
-        values, slopes = self._values, np.zeros(len(self._values))
+        values, slopes = self.values, np.zeros(len(self.values))
         plain = np.ones(len(values), dtype=np.bool_)
         turn = np.mod(schedule.unknowns * GOLDEN, 1.0) + 0.5
         slopes[schedule.inputs] = np.where(self._free[schedule.unknowns], turn, 0.0)
@@ -350,7 +346,7 @@ class ArrayFreezing:
     def program(self, roots: Ints) -> ArrayProgram:
         """Returns the program of the rows at these nodes (r,), each of which varies."""
         layout = self._lay_out(roots)
-        count, width = len(self._values), len(self._free)
+        count, width = len(self.values), len(self._free)
         nodes = _distinct(layout.nodes, count)
         columns = _distinct(layout.unknown, width)
         indptr = np.zeros(len(roots) + 1, dtype=np.intp)
@@ -371,9 +367,7 @@ class ArrayFreezing:
             input_of[columns],
             self._batches(nodes),
             layout.steps,
-            self._values,
-            self._slopes,
-            lambda: self._plain[roots],
+            self,
         )
 
     def _batches(self, nodes: Ints) -> list[Batch]:
@@ -389,7 +383,7 @@ class ArrayFreezing:
 
     def _find_pairs(self, roots: Ints) -> _Layout:
         steps: list[Step] = []
-        count, width = len(self._values), len(self._free)
+        count, width = len(self.values), len(self._free)
         above = _Pending()
         rows = np.arange(len(roots))
         above.add(self._levels[roots], rows, roots, np.full(len(roots), -1), np.full(len(roots), 4 * count))
@@ -402,7 +396,7 @@ class ArrayFreezing:
             key = row * max(count, width) + second
             order = np.argsort(key, kind="stable")
             key = key[order]
-            starts = np.flatnonzero(np.concatenate((FIRST, key[1:] != key[:-1])))
+            starts = np.flatnonzero(np.diff(key, prepend=-1))
             unique = order[starts]
             row, second = row[unique], second[unique]
             single = len(starts) == len(order)
@@ -420,13 +414,14 @@ class ArrayFreezing:
         children = self._operands[node]
         at, k = np.nonzero((children >= 0) & self._varies[children])
         child = children[at, k].astype(np.intp)
-        above.add(self._levels[child], row[at], child, low + at, k * len(self._values) + node[at])
+        above.add(self._levels[child], row[at], child, low + at, k * len(self.values) + node[at])
 
     def _curved(self, nodes: Ints) -> Bools:
         """Tells whether each node is not an affine function of those of its operands that vary."""
         ops, operands = self._ops[nodes], self._operands[nodes]
         first, second = (self._varies[operands[:, k]] & (operands[:, k] >= 0) for k in (0, 1))
-        curved: Bools = ~(_STRAIGHT[ops] | (ops == Op.DIV) & ~second | (ops == Op.MUL) & ~(first & second))
+        straight = np.isin(ops, [*LINEAR, IDENTITY])
+        curved: Bools = ~(straight | (ops == Op.DIV) & ~second | (ops == Op.MUL) & ~(first & second))
         return curved
 
 
@@ -452,16 +447,6 @@ class _Pending:
         if len(pieces) == 1:
             return pieces[0]
         return tuple(np.concatenate(column) for column in zip(*pieces, strict=True))
-
-
-def _table(ops: Iterable[int]) -> Bools:
-    found = np.zeros(64, dtype=np.bool_)
-    found[list(ops)] = True
-    return found
-
-
-_BRANCHES = _table(BRANCHING)
-_STRAIGHT = _table([*LINEAR, IDENTITY])
 
 
 def _distinct(numbers: Ints, count: int) -> Ints:

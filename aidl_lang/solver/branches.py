@@ -19,9 +19,9 @@ import numpy as np
 
 from aidl_lang.common.records import record
 from aidl_lang.solver import newton
-from aidl_lang.solver.array_program import ZERO, ArrayProgram
+from aidl_lang.solver.array_program import ZERO
 from aidl_lang.solver.expression import Floats, Ints, Op
-from aidl_lang.solver.freezing import AffineProgram, Branch, Freezer, Frozen, Program, Root
+from aidl_lang.solver.freezing import AnyProgram, Branch, Choice, Freezer, Frozen, Root
 from aidl_lang.solver.newton import Clock, End, System
 from aidl_lang.solver.problem import Relation, Row, Settings
 from aidl_lang.solver.valuation import Valuation
@@ -163,7 +163,7 @@ class _Attempt:
         """Solves with the branches active at `base`; returns these, and whether the result lies in others."""
         region: list[Root] = []
         outside: tuple[list[float], Verdict] | None = None
-        choice = self.freezer.choice(flipped)
+        choice = Choice(self.freezer, flipped)
         while True:
             self._move_to(base)
             roots: list[Root] = [self.task.rows[i].expression for i in self.considered]
@@ -281,7 +281,7 @@ class _Attempt:
     def _solve_program(
         self,
         frozen: Frozen,
-        program: AffineProgram | Program | ArrayProgram,
+        program: AnyProgram,
         start: dict[int, float],
         origin: dict[int, float],
         restarts: int,

@@ -25,7 +25,6 @@ from aidl_lang.solver.loosening import Scope
 from aidl_lang.solver.newton import Clock, End, perturbation
 from aidl_lang.solver.problem import Concession, Failure, GroupFailure, Member, Problem, Relation, Settings
 from aidl_lang.solver.refuting import MOST_ACCUSED, Linearised, Relaxation, needed, suspects
-from aidl_lang.solver.valuation import FLAT, gradients
 
 WORK = 60_000
 """Budget of all explanations of one solve: rows times unknowns, summed over the attempts."""
@@ -187,8 +186,7 @@ class _ConflictSearch:
     def _nearest(self, conflict: Sequence[int], best: _SearchResult, starts: int) -> _SearchResult:
         """Returns the best of searches from many places, those with no kept size changed first."""
         hierarchy, clock = self.hierarchy, Clock(min(LONGEST, self.hierarchy.clock.left / 2.0))
-        mentioned = frozenset[int]().union(*map(hierarchy.mentions.__getitem__, conflict))
-        free = sorted(mentioned & self.scope.free)
+        free = sorted(hierarchy.mentioned(conflict) & self.scope.free)
         self.ended = []
         positions = frozenset(u for u in free if not hierarchy.is_kept[u] or hierarchy.is_spanned[u])
         for scope in dict.fromkeys((positions, frozenset(free))):
@@ -242,12 +240,8 @@ class _ConflictSearch:
         said = [i for i in conflict if constraints[i].whole or constraints[i].inside]
         if not said or len(said) == len(conflict) or not hierarchy.problem.named:
             return conflict
-        hierarchy.refresh(said)
-        roots = [row.expression for row in hierarchy.rows(said)]
-        slopes = gradients(hierarchy.values, roots)
-        sloping = {u for root in roots for u, slope in slopes[root].items() if abs(slope) > FLAT}
-        bounded = frozenset().union(*(hierarchy.mentions[i] for i in conflict if i not in said))
-        narrow = replace(self.scope, free=self.scope.free - (bounded - sloping))
+        bounded = hierarchy.mentioned(i for i in conflict if i not in said)
+        narrow = replace(self.scope, free=self.scope.free - (bounded - hierarchy.sloping(said)))
         apart = _ConflictSearch(hierarchy, narrow, self.before)
         if apart._holds(said):
             return conflict
@@ -311,7 +305,7 @@ class _ConflictSearch:
             if len(around) == before:
                 return
             yield around
-            touched = touched.union(*(hierarchy.mentions[index] & free for index in around))
+            touched |= hierarchy.mentioned(around) & free
             before = len(around)
 
     # -- data of the explanation
@@ -319,18 +313,14 @@ class _ConflictSearch:
     def _count(self, conflict: Sequence[int]) -> tuple[tuple[int, ...], int]:
         """Returns the unknowns that could move for the conflict, and its number of equations."""
         hierarchy = self.hierarchy
-        mentioned = frozenset().union(*map(hierarchy.mentions.__getitem__, conflict))
-        rows = hierarchy.rows(conflict)
-        return tuple(sorted(mentioned & self.scope.free)), sum(r.relation is Relation.EQUAL for r in rows)
+        moving = tuple(sorted(hierarchy.mentioned(conflict) & self.scope.free))
+        return moving, sum(row.relation is Relation.EQUAL for row in hierarchy.rows(conflict))
 
     def _sizes(self, conflict: Sequence[int]) -> frozenset[int]:
         """Returns the kept sizes in those constraints of the conflict that hang on no position."""
         hierarchy, found = self.hierarchy, set[int]()
         for index in conflict:
-            roots = [row.expression for row in hierarchy.rows([index])]
-            hierarchy.refresh([index])
-            slopes = gradients(hierarchy.values, roots)
-            reached = {u for root in roots for u, slope in slopes[root].items() if abs(slope) > FLAT}
+            reached = hierarchy.sloping([index])
             if all(map(hierarchy.is_kept.__getitem__, reached)):
                 found |= reached
         return frozenset(found)
@@ -338,16 +328,13 @@ class _ConflictSearch:
     def _curved(self, conflict: Sequence[int]) -> bool:
         """Tells whether the slopes of the rows depend on the place."""
         hierarchy = self.hierarchy
-        roots = [row.expression for row in hierarchy.rows(conflict)]
         free = sorted(self.scope.free)
         aside = perturbation(len(free)) * hierarchy.problem.scale[free]
         here = hierarchy.save(free)
         slopes = []
         for values in (here, {u: here[u] + step for u, step in zip(free, aside.tolist(), strict=True)}):
             hierarchy.values.assign(values.items())
-            hierarchy.refresh(conflict)
-            found = gradients(hierarchy.values, roots)
-            slopes.append(np.array([found[root].get(u, 0.0) for root in roots for u in free]))
+            slopes.append(hierarchy.slopes(conflict, free))
         hierarchy.values.assign(here.items())
         return bool(np.abs(slopes[0] - slopes[1]).max() > CURVED * np.abs(slopes[0]).max())
 
@@ -374,8 +361,8 @@ class _ConflictSearch:
         return self.trials[constraints]
 
     def _cost(self, constraints: Sequence[int]) -> int:
-        unknowns = frozenset().union(*map(self.hierarchy.mentions.__getitem__, constraints))
-        return len(self.hierarchy.rows(constraints)) * len(unknowns & self.scope.free)
+        hierarchy = self.hierarchy
+        return len(hierarchy.rows(constraints)) * len(hierarchy.mentioned(constraints) & self.scope.free)
 
     def _attempt(
         self,
@@ -477,8 +464,8 @@ def reasons(problem: Problem, settings: Settings, concession: Concession, solved
         scope = Scope(moving - left, concession.constraints)
         before = {unknown: float(concession.values[unknown]) for unknown in concession.free}
         found, minimal = conflict(hierarchy, scope, before)
-        mentioned = frozenset[int]().union(*map(hierarchy.mentions.__getitem__, found))
-        share = _bound(hierarchy, found, left & mentioned, concession, solved) or left & mentioned or left
+        asked = left & hierarchy.mentioned(found)
+        share = _bound(hierarchy, found, asked, concession, solved) or asked or left
         rest, more, is_known = concession.constraints, found, len(share) > 1
         while more and is_known:  # several that go together may be asked for more than once
             rest = tuple(index for index in rest if index not in more)

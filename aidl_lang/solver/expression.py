@@ -119,11 +119,6 @@ def _sqrt(a: float, _: float) -> float:
     return 0.0 if a >= -ROUNDING else NAN
 
 
-def _mod(a: float, b: float) -> float:
-    turns = whole_turns(a, b)
-    return a - b * turns
-
-
 def whole_turns(a: float, b: float) -> float:
     """Returns floor(a / b), NaN if the quotient is not finite."""
     quotient = _div(a, b)
@@ -168,14 +163,6 @@ def _cubic_max(p0: float, p1: float, p2: float, p3: float) -> float:
     return w0 * p0 + w1 * p1 + w2 * p2 + w3 * p3
 
 
-def _minimum(a: float, b: float) -> float:
-    return a if a <= b else (b if b < a else NAN)
-
-
-def _maximum(a: float, b: float) -> float:
-    return a if a >= b else (b if b > a else NAN)
-
-
 VALUE: dict[int, Callable[..., float]] = {
     Op.ADD: operator.add,
     Op.SUB: operator.sub,
@@ -193,9 +180,9 @@ VALUE: dict[int, Callable[..., float]] = {
     Op.ABS: lambda a, _: abs(a),
     Op.SQUARE: lambda a, _: a * a,
     Op.HYPOT: math.hypot,
-    Op.MINIMUM: _minimum,
-    Op.MAXIMUM: _maximum,
-    Op.MOD: _mod,
+    Op.MINIMUM: lambda a, b: a if a <= b else (b if b < a else NAN),
+    Op.MAXIMUM: lambda a, b: a if a >= b else (b if b > a else NAN),
+    Op.MOD: lambda a, b: a - b * whole_turns(a, b),
     Op.SELECT: lambda c, a, b: a if c >= 0.0 else b,
     Op.CUBIC_MAX: _cubic_max,
 }
@@ -203,10 +190,6 @@ VALUE: dict[int, Callable[..., float]] = {
 
 def _finite(d: float) -> float:
     return d if math.isfinite(d) else 0.0
-
-
-def _d_div(a: float, b: float, _: float) -> tuple[float, float]:
-    return _finite(_div(1.0, b)), _finite(_div(-a, b * b))
 
 
 def _d_power(a: float, b: float, value: float) -> tuple[float, float]:
@@ -231,16 +214,12 @@ def _d_hypot(a: float, b: float, length: float) -> tuple[float, float]:
     return _finite(a / length), _finite(b / length)
 
 
-def _d_cubic_max(p0: float, p1: float, p2: float, p3: float, _: float) -> tuple[float, ...]:
-    return bernstein_weights(cubic_maximiser(p0, p1, p2, p3))
-
-
 PARTIALS: dict[int, Callable[..., tuple[float, ...]]] = {
     Op.ADD: lambda a, b, _: (1.0, 1.0),
     Op.SUB: lambda a, b, _: (1.0, -1.0),
     Op.NEG: lambda a, b, _: (-1.0, 0.0),
     Op.MUL: lambda a, b, _: (_finite(b), _finite(a)),
-    Op.DIV: _d_div,
+    Op.DIV: lambda a, b, _: (_finite(_div(1.0, b)), _finite(_div(-a, b * b))),
     Op.POWER: _d_power,
     Op.SIN: lambda a, b, _: (_finite(math.cos(a)) if math.isfinite(a) else 0.0, 0.0),
     Op.COS: lambda a, b, _: (-math.sin(a) if math.isfinite(a) else 0.0, 0.0),
@@ -256,7 +235,7 @@ PARTIALS: dict[int, Callable[..., tuple[float, ...]]] = {
     Op.MAXIMUM: lambda a, b, _: (1.0, 0.0) if a >= b else (0.0, 1.0),
     Op.MOD: lambda a, b, _: (1.0, _finite(-whole_turns(a, b))),
     Op.SELECT: lambda c, a, b, _: (0.0, 1.0, 0.0) if c >= 0.0 else (0.0, 0.0, 1.0),
-    Op.CUBIC_MAX: _d_cubic_max,
+    Op.CUBIC_MAX: lambda p0, p1, p2, p3, _: bernstein_weights(cubic_maximiser(p0, p1, p2, p3)),
 }
 
 
@@ -264,7 +243,7 @@ def values_of(op: int, operands: tuple[Floats, ...]) -> Floats:
     """Returns the values (k,) of k nodes of one operation, from (k,) arrays of their operands."""
     if function := _VALUES.get(op):
         return function(*operands)
-    return np.array([VALUE[op](*each) for each in zip(*_columns(operands), strict=True)])
+    return np.array([VALUE[op](*each) for each in _each(operands)])
 
 
 def partials_of(op: int, operands: tuple[Floats, ...], value: Floats) -> tuple[Floats, ...]:
@@ -274,12 +253,12 @@ def partials_of(op: int, operands: tuple[Floats, ...], value: Floats) -> tuple[F
             slope if np.isfinite(slope).all() else np.where(np.isfinite(slope), slope, 0.0)
             for slope in function(*operands, value)
         )
-    slopes = [PARTIALS[op](*each) for each in zip(*_columns(operands), value.tolist(), strict=True)]
+    slopes = [PARTIALS[op](*each, v) for each, v in zip(_each(operands), value.tolist(), strict=True)]
     return tuple(np.array(slopes).reshape(len(value), -1).T)
 
 
-def _columns(operands: tuple[Floats, ...]) -> list[list[float]]:
-    return [a.tolist() for a in (operands if len(operands) > 1 else operands * 2)]
+def _each(operands: tuple[Floats, ...]) -> Iterable[tuple[float, ...]]:
+    return zip(*(a.tolist() for a in (operands if len(operands) > 1 else operands * 2)), strict=True)
 
 
 def _over_square(y: Floats, x: Floats, _: Floats) -> tuple[Floats, Floats]:
@@ -365,12 +344,8 @@ class Tape:
         return [tuple(row[:k]) for row, k in zip(self.operands.tolist(), arity, strict=True)]
 
 
-def _of_one(op: int) -> Callable[[TapeBuilder, int], int]:
-    return lambda tape, a: tape._node(op, a)
-
-
-def _of_two(op: int) -> Callable[[TapeBuilder, int, int], int]:
-    return lambda tape, a, b: tape._node(op, a, b)
+def _operation(op: int) -> Callable[..., int]:
+    return lambda tape, *operands: tape._node(op, *operands)
 
 
 class TapeBuilder:
@@ -414,7 +389,7 @@ class TapeBuilder:
             return b
         if ops[b] == CONSTANT and constants[b] == 0.0:
             return a
-        return self._of_two(Op.ADD, a, b) if a <= b else self._of_two(Op.ADD, b, a)
+        return self._node(Op.ADD, a, b) if a <= b else self._node(Op.ADD, b, a)
 
     def sub(self, a: int, b: int) -> int:
         if a == b:
@@ -433,7 +408,7 @@ class TapeBuilder:
             for i, j in ((0, 0), (0, 1), (1, 0), (1, 1)):
                 if self._operands[a][i] == self._operands[b][j]:
                     return self.sub(self._operands[a][1 - i], self._operands[b][1 - j])
-        return self._of_two(Op.SUB, a, b)
+        return self._node(Op.SUB, a, b)
 
     def mul(self, a: int, b: int) -> int:
         for factor, other in ((a, b), (b, a)):
@@ -448,7 +423,7 @@ class TapeBuilder:
                 return self.neg(other)
         if a == b:
             return self.square(a)
-        return self._of_two(Op.MUL, a, b) if a < b else self._of_two(Op.MUL, b, a)
+        return self._node(Op.MUL, a, b) if a < b else self._node(Op.MUL, b, a)
 
     def div(self, a: int, b: int) -> int:
         if self._is(b, 1.0):
@@ -463,10 +438,10 @@ class TapeBuilder:
             self._shifts.add(node)
         return node
 
-    sin, cos, tan, asin, acos, sqrt, abs, square = map(
-        _of_one, (Op.SIN, Op.COS, Op.TAN, Op.ASIN, Op.ACOS, Op.SQRT, Op.ABS, Op.SQUARE)
+    sin, cos, tan, asin, acos, sqrt, abs, square, atan2, hypot, mod = map(
+        _operation,
+        (Op.SIN, Op.COS, Op.TAN, Op.ASIN, Op.ACOS, Op.SQRT, Op.ABS, Op.SQUARE, Op.ATAN2, Op.HYPOT, Op.MOD),
     )
-    atan2, hypot, mod = map(_of_two, (Op.ATAN2, Op.HYPOT, Op.MOD))
     """`mod` is the remainder a - b floor(a / b), which has the sign of b."""
 
     def power(self, base: int, exponent: int) -> int:
@@ -544,7 +519,7 @@ class TapeBuilder:
         return level[0]
 
     def _extreme(self, op: int, a: int, b: int) -> int:
-        return a if a == b else self._of_two(op, min(a, b), max(a, b))
+        return a if a == b else self._node(op, min(a, b), max(a, b))
 
     # -- shifts
 
@@ -584,26 +559,17 @@ class TapeBuilder:
             total = self.add(total, shift)
         return self.add(total, rest)
 
-    def _of_two(self, op: int, a: int, b: int) -> int:
-        """Returns the node of an operation on two operands, the most common kind."""
-        key = (op, a, b)
+    def _node(self, op: int, *args: int) -> int:
+        key = (op, *args)
         node = self._known.get(key)
         if node is not None:
             return node
-        if self._ops[a] == CONSTANT == self._ops[b]:
-            return self._node(op, a, b)
-        return self._new(key, op, (a, b), 0.0)
-
-    def _node(self, op: int, *args: int) -> int:
-        ops, constants = self._ops, self._constants
-        if {ops[a] for a in args} == {CONSTANT}:
-            values = [constants[a] for a in args]
+        if self._ops[args[0]] == CONSTANT and all(self._ops[a] == CONSTANT for a in args):
+            values = [self._constants[a] for a in args]
             folded = VALUE[op](*values) if len(values) > 1 else VALUE[op](values[0], 0.0)
             if math.isfinite(folded):
                 return self.constant(folded)
-        key = (op, *args)
-        node = self._known.get(key)
-        return self._new(key, op, args, 0.0) if node is None else node
+        return self._new(key, op, args, 0.0)
 
     def _new(self, key: tuple[object, ...], op: int, operands: tuple[int, ...], constant: float) -> int:
         node = self._known[key] = len(self._ops)

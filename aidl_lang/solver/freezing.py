@@ -47,6 +47,9 @@ Root: TypeAlias = "int | tuple[int, int]"
 MANY = 400
 """Roots from which on programs work on arrays."""
 
+AnyProgram: TypeAlias = "AffineProgram | Program | ArrayProgram"
+"""Some rows as functions of their free unknowns; `linear` ones are affine."""
+
 Branch: TypeAlias = tuple[int, int]
 """A branching node and the number of its branch."""
 
@@ -61,7 +64,7 @@ class Frozen:
     steady    rows that hang on no such choice
     """
 
-    programs: Sequence[AffineProgram | Program | ArrayProgram]
+    programs: Sequence[AnyProgram]
     constant: list[int]
     branches: tuple[Branch, ...]
     steady: frozenset[int]
@@ -85,30 +88,20 @@ class Freezer:
         self.hanging: set[int] = set()
         """Knots that hang on a choice, which free unknowns decide."""
 
-    def choice(self, flipped: frozenset[int] = frozenset()) -> Choice:
-        """Returns the choice of the branches that are active when they are first asked for, at values that
-        must be up to date; nodes in `flipped` take the other branch.
-        """
-        return Choice(self, flipped)
-
     def freeze(self, roots: Sequence[Root]) -> Frozen:
         """Returns programs for `roots` in the branches that are active."""
-        return self.choice().freeze(roots)
+        return Choice(self).freeze(roots)
 
     def slopes(self, node: int) -> dict[int, float] | None:
         """Returns the slopes of a node in the branch that is active, by unknown; None where it bends."""
-        form, width = self.choice().form(self.forms[node]), self.forms.width
+        form, width = Choice(self).form(self.forms[node]), self.forms.width
         if isinstance(form, float):
             return {}
         return None if any(slot >= width for slot in form.terms) else dict(form.terms)
 
-    def hangs(self, form: Form) -> bool:
-        """Tells whether a form of the tape hangs on a choice."""
-        return not self.hanging.isdisjoint(self.forms.below(form))
-
     def choices(self, roots: Iterable[int]) -> list[int]:
         """Returns the nodes below `roots` at which free unknowns choose the branch, outermost first."""
-        forms, freezing = self.forms, self.choice()
+        forms, freezing = self.forms, Choice(self)
         found: set[int] = set()
         stack: list[int] = []
         for root in roots:
@@ -147,10 +140,12 @@ def _freeze_to_arrays(
 
 @record(frozen=False)
 class Choice:
-    """A choice of branches, at the values at which it was made."""
+    """The choice of the branches that are active when they are first asked for, at values that must be up to
+    date; nodes in `flipped` take the other branch.
+    """
 
     freezer: Freezer
-    flipped: frozenset[int]
+    flipped: frozenset[int] = frozenset()
     found: dict[int, Form] = field(default_factory=dict)
     """The forms of knots that hang on a choice."""
     chosen: dict[int, int] = field(default_factory=dict)
@@ -172,7 +167,7 @@ class Choice:
         steady = frozenset(
             row
             for row, (root, form) in enumerate(zip(roots, whole, strict=True))
-            if isinstance(root, int) and not self.freezer.hangs(form)
+            if isinstance(root, int) and self.hanging.isdisjoint(self.forms.below(form))
         )
         return Frozen(self._programs(rooted), constant, self._active(whole), steady)
 

@@ -1,27 +1,18 @@
 """How a group is solved: few parts give way, of these few things, and these by the shortest way.
 
-The paper (appendix B) solves a structure in two stages: translations of its children first, then the
-geometry in them, level by level. Here, too, every unknown of the subtree has a tier (`loosening`) that says
-how dear it is to move: what the constraints place; what else is the group's own, the frames of its
-children among it; frames further down; what lies inside of parts; what rides along with its part, because
-constraints name one thing of that part at most; sizes as written. But no stage frees a whole tier:
+The paper (appendix B) frees one tier after another (`loosening` has them); here no stage frees a whole one:
 
 1. What the constraints place is freed, with all constraints that bind it. Their rows are solved for the
-   nearest point (`branches`, `newton`), where that leaves a choice in turn: first what follows nothing else
-   that is placed, then what follows that. If they hold, that was all.
+   nearest point (`branches`, `newton`), where that leaves a choice in turn. If they hold, that was all.
 2. Else the search ends where the rows contradict each other. Who can help has a share in what is left of
-   them. The cheapest class that suffices is taken; of that as few parts as will do (a frame, the inside
-   of a part, a size), and of these as few things (`loosening`). They are freed besides, the rest stays
-   rigid, and all is solved again from where it began.
-3. That is repeated, up to `ROUNDS` times. Before a size changes, the positions are tried as a whole,
-   branch by branch, since a size may be asked for only because another branch of a box was not seen.
-4. If nobody can help, or it did not help, and no proof refutes the constraints, whole tiers are tried.
-5. Where more moved than the rows ask for, things are held again (`thin`).
-6. Preferences are first tried as if they were hard. If that fails, each gets a slack, an unknown that is
-   dear (the dearer, the greater the weight); those that then hold but for its give are made exact.
+   them (`loosening`). They are freed besides, the rest stays rigid, and all is solved again from where it
+   began; up to `ROUNDS` times. Before a size changes, the positions are tried as a whole.
+3. If nobody can help, or it did not help, and no proof refutes the constraints, whole tiers are tried.
+4. Where more moved than the rows ask for, things are held again (`thin`).
+5. Preferences are first tried as if they were hard, then with slacks: unknowns that are dear.
 
-Each try begins from the values before, so that the order of constraints shows nowhere. What gave way
-though it is dear is recorded with its constraints, and told. Only what fails is explained (`conflicts`).
+Each try begins from the values before, so that the order of constraints shows nowhere. Only what fails is
+explained (`conflicts`).
 """
 
 from __future__ import annotations
@@ -75,7 +66,7 @@ class Group:
 
     def __init__(self, hierarchy: Hierarchy, group: int) -> None:
         self.hierarchy, self.group = hierarchy, group
-        held = hierarchy.held_by(group)
+        held = hierarchy.held_by.get(group, [])
         self.hard = [index for index in held if hierarchy.is_hard[index]]
         self.soft = [index for index in held if not hierarchy.is_hard[index]]
         self.tiers = Tiers(hierarchy, group)

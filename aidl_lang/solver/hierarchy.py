@@ -16,11 +16,11 @@ from numpy.typing import NDArray
 
 from aidl_lang.common.records import record
 from aidl_lang.solver import Stages, expression
-from aidl_lang.solver.branches import Metric, Task, Verdict, attempt, holds, violation_of
+from aidl_lang.solver.branches import Metric, Task, Verdict, attempt, holds
 from aidl_lang.solver.expression import Bools, Floats, Ints, Op, mentioned
 from aidl_lang.solver.group import Group
 from aidl_lang.solver.linear import Sparse, each_once
-from aidl_lang.solver.loosening import OWN, SEALED, Scope, Tier, stage_name
+from aidl_lang.solver.loosening import OWN, SEALED, Scope, Tier
 from aidl_lang.solver.newton import Clock
 from aidl_lang.solver.problem import (
     GroupFailure,
@@ -33,10 +33,10 @@ from aidl_lang.solver.problem import (
     depths,
     violations,
 )
-from aidl_lang.solver.valuation import Valuation
+from aidl_lang.solver.valuation import FLAT, Valuation, gradients
 
 if TYPE_CHECKING:
-    from aidl_lang.solver.levels import Levels, Stage
+    from aidl_lang.solver.levels import Levels
 
 FIRM = 1e-3
 """Length of a change of a kept size that counts as much as a change of 1 of a position."""
@@ -88,7 +88,8 @@ class Hierarchy:
         return rides
 
     @cached_property
-    def _held_by(self) -> dict[int, list[int]]:
+    def held_by(self) -> dict[int, list[int]]:
+        """The constraints that each group holds, if it holds any."""
         found: dict[int, list[int]] = {}
         for index, holder in enumerate(self.problem.holder.tolist()):
             found.setdefault(holder, []).append(index)
@@ -111,22 +112,20 @@ class Hierarchy:
 
     @cached_property
     def mentions(self) -> Mapping[int, frozenset[int]]:
-        """The unknowns in each constraint, by its index; found when first asked for."""
-        return _Mentions(self.problem, self._levels)
+        """The unknowns in each constraint, by its index."""
+        if (levels := self._levels) is None:
+            return _Mentions(self.problem)
+        starts = np.searchsorted(levels.constraints, np.arange(1, len(self.problem.holder)))
+        found = (frozenset(part.tolist()) for part in np.split(levels.unknowns, starts))
+        return dict(enumerate(found))
 
     @cached_property
     def _mentioned_by(self) -> dict[int, list[int]]:
         found: dict[int, list[int]] = {}
-        for index, unknown in self._mentions():
-            found.setdefault(unknown, []).append(index)
+        for index in range(len(self.problem.holder)):
+            for unknown in self.mentions[index]:
+                found.setdefault(unknown, []).append(index)
         return found
-
-    def _mentions(self) -> Iterable[tuple[int, int]]:
-        """Yields pairs of a constraint and an unknown in it, by constraint."""
-        if self._levels is not None:
-            return zip(self._levels.constraints.tolist(), self._levels.unknowns.tolist(), strict=True)
-        indices = range(len(self.problem.holder))
-        return ((index, unknown) for index in indices for unknown in self.mentions[index])
 
     def run(self, recollection: Recollection | None = None) -> None:
         """Solves the groups depth by depth, from below; recalls those that no change has reached."""
@@ -138,15 +137,15 @@ class Hierarchy:
             if recollection is not None:
                 known = recollection.recall(depth, self.reached)
                 for group in np.flatnonzero(known).tolist():
-                    self.stages.extend(recollection.stages(group))
-            groups = [g for g in self._held_by if self._group_depths[g] == depth and not known[g]]
-            is_small = len(groups) < FEW <= len(self._held_by)
+                    self.stages += recollection.memory.stages.get(group, [])
+            groups = [g for g in self.held_by if self._group_depths[g] == depth and not known[g]]
+            is_small = len(groups) < FEW <= len(self.held_by)
             if usual and count >= (LARGE if is_small else MANY):
                 self._solve_together(depth, known)
             else:
                 self._solve_with_care(dict.fromkeys(groups, (0, 0)))
             if recollection is not None:
-                recollection.note(depth, self.reached)
+                recollection.reached[depth] = self.reached.copy()
 
     def _solve_together(self, depth: int, known: Bools) -> None:
         """Solves the groups at `depth`, but for `known` (g,), at once; then one by one those that remain."""
@@ -158,7 +157,8 @@ class Hierarchy:
         levels.binding[list(self._broken)] = False
         stages = list(levels.solve(depth, known))
         left = set(levels.unsolved(depth).tolist())
-        passed = self._record(stages, left)
+        passed = {report.group: tier for tier, report in stages if report.succeeded}
+        self.stages += [r for _, r in stages if r.succeeded or r.group not in left]  # others are tried again
         wishing = self.problem.holder[~np.isnan(self.problem.weight)].tolist()
         left.update(group for group in wishing if self._group_depths[group] == depth)
         self._solve_with_care({group: passed.get(group, (0, 0)) for group in left if not known[group]})
@@ -171,27 +171,13 @@ class Hierarchy:
                 Group(self, group).solve(groups[group])
             self.reached[:] = self.values.unknowns
 
-    def _record(self, stages: list[Stage], left: set[int]) -> dict[int, Tier]:
-        """Reports the stages but those that are tried again; returns the last that helped each group."""
-        passed: dict[int, Tier] = {}
-        for stage in stages:
-            name = stage_name(stage.tier)
-            columns = (stage.groups, stage.unknowns, stage.rows, stage.solved)
-            for group, unknowns, rows, solved in zip(*(column.tolist() for column in columns), strict=True):
-                if solved:
-                    passed[group] = stage.tier
-                if solved or group not in left:
-                    self.stages.append(StageReport(group, name, unknowns, rows, solved))
-        return passed
-
     def violations(self) -> Floats:
         """Returns the violation of each row (r,) at the end, in its units; infinite if it has no value."""
         if self._levels is not None:
             return violations(self.problem, self._levels.nodes())
         self.values.assign(enumerate(self.reached.tolist()))
         self.refresh(range(len(self.problem.holder)))
-        rows = (row for constraint in self.problem.constraints for row in constraint.rows)
-        return np.array([violation_of(row, self.values) for row in rows])
+        return violations(self.problem, np.array(self.values.nodes))
 
     def changed(self) -> list[int]:
         """Returns the kept sizes that differ from their first guess."""
@@ -225,9 +211,6 @@ class Hierarchy:
         is_translated = self._is_frame[unknown] and self.settings.stages is not Stages.LEVEL
         return (3, level) if is_translated else (4, level)
 
-    def held_by(self, group: int) -> list[int]:
-        return self._held_by.get(group, [])
-
     def solved_mentioning(self, unknown: int, group: int) -> Iterable[int]:
         """Yields the constraints of `group` and below it that mention an unknown, without those not met."""
         constraints, broken = self.problem.constraints, self._broken
@@ -251,6 +234,32 @@ class Hierarchy:
     def refresh(self, indices: Iterable[int]) -> None:
         """Brings the nodes of these constraints up to date."""
         self.values.update([row.expression for row in self.rows(indices)])
+
+    def mentioned(self, indices: Iterable[int]) -> frozenset[int]:
+        """Returns the unknowns in any of these constraints."""
+        return frozenset[int]().union(*map(self.mentions.__getitem__, indices))
+
+    def sloping(self, indices: Iterable[int]) -> set[int]:
+        """Returns the unknowns by which a row of these constraints has a slope at the current values."""
+        roots = [row.expression for row in self.rows(indices)]
+        self.values.update(roots)
+        found = gradients(self.values, roots).values()
+        return {u for gradient in found for u, slope in gradient.items() if abs(slope) > FLAT}
+
+    def slopes(self, indices: Iterable[int], unknowns: Iterable[int], ends: bytes | None = None) -> Floats:
+        """Returns the slopes (r, k) of the rows of these constraints by some unknowns at the current values,
+        without what is below the nodes `ends`.
+        """
+        roots = [row.expression for row in self.rows(indices)]
+        self.values.update(roots)
+        column = {unknown: k for k, unknown in enumerate(unknowns)}
+        matrix = np.zeros((len(roots), len(column)))
+        found = gradients(self.values, roots, ends=ends)
+        for i, root in enumerate(roots):
+            for unknown, slope in found[root].items():
+                if unknown in column:
+                    matrix[i, column[unknown]] = slope
+        return matrix
 
     def unmet(self, indices: Collection[int]) -> list[int]:
         """Returns the constraints that do not hold by the original expressions at the current values."""
@@ -301,19 +310,14 @@ class Hierarchy:
 
 
 class _Mentions(dict[int, frozenset[int]]):
-    def __init__(self, problem: Problem, levels: Levels | None) -> None:
-        super().__init__()
-        self._problem, self._levels = problem, levels
-        if levels is not None:
-            self._starts = np.searchsorted(levels.constraints, np.arange(len(problem.holder) + 1))
+    """The unknowns in each constraint, found when asked for."""
+
+    def __init__(self, problem: Problem) -> None:
+        self._problem = problem
 
     def __missing__(self, index: int) -> frozenset[int]:
-        if self._levels is not None:
-            unknowns = self._levels.unknowns[self._starts[index] : self._starts[index + 1]].tolist()
-        else:
-            rows = self._problem.constraints[index].rows
-            unknowns = mentioned(self._problem.tape, [row.expression for row in rows])
-        found = self[index] = frozenset(unknowns)
+        rows = self._problem.constraints[index].rows
+        found = self[index] = frozenset(mentioned(self._problem.tape, [row.expression for row in rows]))
         return found
 
 
@@ -541,9 +545,10 @@ class Recollection:
     """A solve with a memory: reads the values of the last solve, and at the end stores those of this one."""
 
     def __init__(self, memory: Memory, problem: Problem, settings: Settings) -> None:
-        self._memory, self._problem = memory, problem
+        self.memory, self._problem = memory, problem
         self._keys = subtree_keys(problem, settings)
-        self._reached: dict[int, Floats] = {}
+        self.reached: dict[int, Floats] = {}
+        """The values reached once the groups at each depth are solved."""
         alike = len(memory.keys) == len(self._keys) and memory.unknowns == len(problem.initial)
         pairs = zip(memory.keys, self._keys, strict=True) if alike else ()
         self.familiar = np.array([a == b for a, b in pairs] if alike else [False] * len(self._keys))
@@ -556,25 +561,17 @@ class Recollection:
         if known.any():
             above = ancestors(self._problem.parent, self._depths, depth)[self._problem.group]
             below = (above >= 0) & known[above]
-            x[below] = self._memory.reached[depth][below]
+            x[below] = self.memory.reached[depth][below]
         return known
-
-    def stages(self, group: int) -> list[StageReport]:
-        """Returns the stages tried for a familiar group."""
-        return self._memory.stages.get(group, [])
-
-    def note(self, depth: int, x: Floats) -> None:
-        """Keeps the values reached once the groups at `depth` are solved."""
-        self._reached[depth] = x.copy()
 
     def close(self, stages: list[StageReport], in_full: bool) -> None:
         """Stores this solve, or nothing if it did not succeed in full: failed groups are tried again."""
         by_group: dict[int, list[StageReport]] = {}
         for stage in stages:
             by_group.setdefault(stage.group, []).append(stage)
-        kept = self._memory
+        kept = self.memory
         kept.keys, kept.unknowns = (self._keys, len(self._problem.initial)) if in_full else ((), 0)
-        kept.reached, kept.stages = (self._reached, by_group) if in_full else ({}, {})
+        kept.reached, kept.stages = (self.reached, by_group) if in_full else ({}, {})
 
 
 def subtree_keys(problem: Problem, settings: Settings) -> tuple[int, ...]:

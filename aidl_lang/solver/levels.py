@@ -26,10 +26,10 @@ from aidl_lang.solver.array_program import ArrayFreezing, ArrayProgram, Schedule
 from aidl_lang.solver.branches import TIGHTER, Metric
 from aidl_lang.solver.expression import Bools, Floats, Ints
 from aidl_lang.solver.hierarchy import riding_depths
-from aidl_lang.solver.linear import stacked_least_norm
-from aidl_lang.solver.loosening import MOST, NAMES, STILL
+from aidl_lang.solver.linear import each_once, stacked_least_norm
+from aidl_lang.solver.loosening import MOST, NAMES, STILL, Tier, stage_name
 from aidl_lang.solver.newton import GAIN, POLISHED, Clock, End, System
-from aidl_lang.solver.problem import Problem, Settings, depths, violations
+from aidl_lang.solver.problem import Problem, Settings, StageReport, depths, violations
 from aidl_lang.solver.valuation import Sorted, components
 
 ROUNDS = 4
@@ -45,19 +45,6 @@ DEPTHS = 1 << 20
 """The factor by which a tier (kind, level) becomes one number: kind * DEPTHS + level."""
 STANDING = KINDS["own"] * DEPTHS + 1
 """The first tier whose members give way only if they have to, and are reported then."""
-
-
-@record()
-class Stage:
-    """The result of one stage for each part (p,) that it decided: the part's group, whether the stage solved
-    it, and the numbers of free unknowns and of rows.
-    """
-
-    tier: tuple[int, int]
-    groups: Ints
-    solved: Bools
-    unknowns: Ints
-    rows: Ints
 
 
 class Levels:
@@ -90,9 +77,7 @@ class Levels:
         rows = np.flatnonzero(freezing.varies(problem.rows.expression))
         row, unknown = freezing.pattern(problem.rows.expression[rows])
         key = problem.rows.constraint[rows[row]].astype(np.int64) * len(everything) + unknown
-        key.sort()
-        pairs: Ints = key[np.diff(key, prepend=-1) > 0]
-        return pairs
+        return each_once(key)
 
     def nodes(self) -> Floats:
         """Returns the value (m,) of each node of the tape at `x`."""
@@ -102,8 +87,10 @@ class Levels:
 
     # -- one depth
 
-    def solve(self, depth: int, known: Bools) -> Iterator[Stage]:
-        """Solves the groups at `depth` as far as it can, except those `known` (g,); yields its stages."""
+    def solve(self, depth: int, known: Bools) -> Iterator[tuple[Tier, StageReport]]:
+        """Solves the groups at `depth` as far as it can, except those `known` (g,); yields its stages, for
+        each part that they decided.
+        """
         problem = self.problem
         holds = self._all(self._holding(self.nodes()))
         active = self.binding & (self._holder_depth >= depth)
@@ -136,8 +123,10 @@ class Levels:
             left &= ~hopeful | hopeless
             parts = np.flatnonzero(hopeful & (solved | hopeless))
             considered = np.bincount(part, minlength=len(left))
-            stage = divmod(code, DEPTHS)
-            yield Stage(stage, group_of[parts], solved[parts], count[parts], considered[parts])
+            tier_of = divmod(code, DEPTHS)
+            columns = (column[parts].tolist() for column in (group_of, count, considered, solved))
+            for group, *decided in zip(*columns, strict=True):
+                yield tier_of, StageReport(group, stage_name(tier_of), *decided)
             if not left.any() or self.clock.expired:
                 return
 

@@ -104,11 +104,12 @@ def _least_norm_by_cholesky(jacobian: Floats, y: Floats) -> LeastNorm | None:
     if len(y) > jacobian.shape[1]:
         return None
     gram = jacobian @ jacobian.T
-    if not _well_conditioned(gram):
-        return None
     try:
+        pivots = np.diagonal(np.linalg.cholesky(gram))
+        if not float(pivots.min()) > INDEPENDENT * float(pivots.max()):
+            return None
         first = np.linalg.solve(gram, -y)
-    except np.linalg.LinAlgError:  # a pivot that LU meets as zero, though Cholesky's did not
+    except np.linalg.LinAlgError:  # LU may meet a pivot as zero, though Cholesky's method did not
         return None
     multipliers: Floats = np.asarray(first - np.linalg.solve(gram, gram @ first + y), dtype=np.float64)
     point: Floats = -(jacobian.T @ multipliers)
@@ -116,14 +117,6 @@ def _least_norm_by_cholesky(jacobian: Floats, y: Floats) -> LeastNorm | None:
     if error > 1e-10 * float(np.abs(y).max()):
         return None
     return LeastNorm(point, multipliers, None, len(y) == jacobian.shape[1])
-
-
-def _well_conditioned(gram: Floats) -> bool:
-    try:
-        pivots = np.diagonal(np.linalg.cholesky(gram))
-    except np.linalg.LinAlgError:
-        return False
-    return float(pivots.min()) > INDEPENDENT * float(pivots.max())
 
 
 def stacked_least_norm(jacobian: Floats, y: Floats, which: Bools) -> tuple[Floats, Floats]:
@@ -200,11 +193,6 @@ class DampedSteps:
             return np.asarray(-(shrunk @ self._vt))
         damped = self._gram + max(mu, 1e-10 * self.largest) * np.eye(len(self._gram))
         return np.asarray(-(self._jacobian.T @ np.linalg.solve(damped, self._residuals)))
-
-
-def with_slacks(jacobian: Matrix, slacks: Floats) -> Matrix:
-    """Returns the Jacobian (m, n) with further columns (m, s) for slacks that are subtracted."""
-    return np.hstack((jacobian, -slacks)) if isinstance(jacobian, np.ndarray) else jacobian.beside(-slacks)
 
 
 @record()
@@ -408,9 +396,7 @@ def starts_of(counts: NDArray[np.intp]) -> Ints:
 def each_once(values: NDArray[np.intp]) -> NDArray[np.intp]:
     """Returns the distinct numbers (k,) of an array, in order."""
     found = np.sort(values, axis=None)
-    if len(found) > 1:
-        found = found[np.concatenate(([True], found[1:] != found[:-1]))]
-    return found
+    return found[np.diff(found, prepend=found[:1] - 1) > 0]
 
 
 def others(count: int, left_out: Iterable[int]) -> NDArray[np.intp]:

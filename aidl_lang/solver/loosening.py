@@ -14,7 +14,6 @@ combination of these; things without a share in it are held.
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
@@ -34,20 +33,8 @@ if TYPE_CHECKING:
 
 # --- The stages at which the unknowns of a group become free.
 #
-# At a group every unknown of its subtree has a tier, which says at which stage it becomes free:
-#
-#     (1, 0)  own position that a constraint of the group places
-#     (1, 1)  own position that only a bound which holds anyway would place
-#     (1, 2)  own length or direction between two points of which a constraint places one
-#     (2, 0)  own position, or translation of a child's frame (owned by the group, too)
-#     (2, 1)  the same of a frame that stands where its content counts as exact
-#     (3, d)  translation of a frame, owned by a group d levels below
-#     (4, d)  other position of a group d levels below, or such a length or direction
-#     (5, d)  position of what rides along with its parent, since no constraint names it
-#     (6, 0)  kept size that a constraint places, at any level
-#     (6, 1)  own kept size
-#     (6, 1 + d)  kept size of a group d levels below
-#     (9, 1)  what is in a group that is sealed: it is never freed
+# At a group every unknown of its subtree has a tier, which says at which stage it becomes free; the table of
+# them is in docs/solver.md. What is in a group that is sealed is never freed: its tier is behind them all.
 #
 # A stage frees all tiers up to its own, as far as they are mentioned: by the group's constraints, or by
 # constraints of descendants that mention something free. Those constraints are the ones that a move could
@@ -115,7 +102,7 @@ class Tiers:
         for index, reached in self.reached(placing, sizing):
             is_bound = all(row.relation is Relation.AT_MOST for row in constraints[index].rows)
             level = int(is_bound and index not in unmet)
-            for unknown in constraints[index].placed.intersection(itertools.chain(*reached)):
+            for unknown in constraints[index].placed & reached:
                 found[unknown] = min(level, found.get(unknown, level))
         self.placed = found
         self._known.clear()
@@ -151,15 +138,13 @@ class Tiers:
             self._everything[key] = self.scope(ENDLESS, seeds)
         return self._everything[key]
 
-    def reached(
-        self, indices: Sequence[int], sizing: Collection[int]
-    ) -> Iterator[tuple[int, list[list[int]]]]:
-        """Yields each constraint with the unknowns that change each of its rows at the current values; sizes
-        are among them only in the constraints `sizing` and in rows that no position changes.
+    def reached(self, indices: Sequence[int], sizing: Collection[int]) -> Iterator[tuple[int, set[int]]]:
+        """Yields each constraint with the unknowns that change it at the current values; sizes are among them
+        only in the constraints `sizing` and in rows that no position changes.
         """
-        hierarchy, mentions = self.hierarchy, self.hierarchy.mentions
+        hierarchy = self.hierarchy
         hierarchy.refresh(indices)
-        mentioned = frozenset[int]().union(*map(mentions.__getitem__, indices))
+        mentioned = hierarchy.mentioned(indices)
         freezer = Freezer(hierarchy.values, (u for u in mentioned if not hierarchy.is_kept[u]))
         slopes: dict[int, Mapping[int, float]] = {}
         bent: list[int] = []
@@ -172,8 +157,8 @@ class Tiers:
                     bent.append(row.expression)
         slopes.update(gradients(hierarchy.values, bent))
         for index in indices:
-            found = [slopes[row.expression] for row in hierarchy.rows([index])]
-            yield index, [[u for u, slope in gradient.items() if abs(slope) > FLAT] for gradient in found]
+            found = (slopes[row.expression].items() for row in hierarchy.rows([index]))
+            yield index, {u for gradient in found for u, slope in gradient if abs(slope) > FLAT}
 
     def is_dear(self, unknown: int) -> bool:
         """Tells whether a move of an unknown is reported: that of a kept size, of what rides along, and of a
@@ -375,7 +360,7 @@ class _Loosening:
         """
         hierarchy = self.hierarchy
         problem, tier = hierarchy.problem, self.tiers.tier
-        mentioned = frozenset[int]().union(*map(hierarchy.mentions.__getitem__, self.constraints))
+        mentioned = hierarchy.mentioned(self.constraints)
         known = sorted(self.tiers.everything(self.scope.constraints).free - self.scope.free)
         is_small = len(known) * len(self.scope.constraints) <= MANY
         for last in (POSITIONS, ENDLESS):
@@ -404,18 +389,13 @@ class _Loosening:
         would not after the step by which the free unknowns satisfy those that do.
         """
         hierarchy = self.hierarchy
-        hierarchy.refresh(constraints)
         owned = hierarchy.rows(constraints)
         owner = np.array(hierarchy.owners(constraints), dtype=np.intp)
-        place = {unknown: k for k, unknown in enumerate([*self.free, *locked])}
-        matrix = np.zeros((len(owned), len(place)))
-        ends = None if any(map(hierarchy.is_kept.__getitem__, place)) else hierarchy.values.still()
-        slopes = gradients(hierarchy.values, [row.expression for row in owned], ends=ends)
-        for i, row in enumerate(owned):
-            for unknown, slope in slopes[row.expression].items():
-                if unknown in place:
-                    matrix[i, place[unknown]] = slope / row.scale
-        matrix = np.nan_to_num(matrix * hierarchy.problem.scale[list(place)])
+        along = [*self.free, *locked]
+        ends = None if any(map(hierarchy.is_kept.__getitem__, along)) else hierarchy.values.still()
+        row_scale = np.array([row.scale for row in owned])
+        slopes = hierarchy.slopes(constraints, along, ends) / row_scale[:, None]
+        matrix = np.nan_to_num(slopes * hierarchy.problem.scale[along])
         lack = np.nan_to_num([-hierarchy.values.nodes[row.expression] / row.scale for row in owned])
         free = matrix[:, : len(self.free)]
         counts = np.array([row.relation is Relation.EQUAL for row in owned])

@@ -14,7 +14,7 @@ import time
 from collections.abc import Iterator
 from dataclasses import field
 from enum import Enum
-from typing import Protocol
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,7 +22,10 @@ from numpy.typing import NDArray
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
 from aidl_lang.solver.expression import Floats
-from aidl_lang.solver.linear import DampedSteps, Matrix, nearest, with_slacks
+from aidl_lang.solver.linear import DampedSteps, Matrix, nearest
+
+if TYPE_CHECKING:
+    from aidl_lang.solver.freezing import AnyProgram
 
 GAIN = 0.1
 """A step must bring this part of the decrease that the linearised rows promise."""
@@ -97,18 +100,6 @@ class Clock:
         return self.seconds - (time.thread_time() - self.start)
 
 
-class Rows(Protocol):
-    """Some rows as functions of their free unknowns: `freezing.Program` or `array_program.ArrayProgram`."""
-
-    @property
-    def linear(self) -> bool:
-        """True if all of them are affine."""
-
-    def residuals(self, x: Floats) -> Floats: ...
-
-    def jacobian(self, row_factors: Floats, column_factors: Floats) -> Matrix: ...
-
-
 class System:
     """The rows of a program, scaled, as functions of scaled displacements.
 
@@ -122,7 +113,7 @@ class System:
 
     def __init__(
         self,
-        program: Rows,
+        program: AnyProgram,
         origin: Floats,
         scale: Floats,
         row_scale: Floats,
@@ -156,7 +147,8 @@ class System:
             return self._constant_jacobian
         matrix = self.program.jacobian(self._per_row, self.scale)
         if self._slack is not None:
-            matrix = with_slacks(matrix, self._slack)
+            slack = -self._slack
+            matrix = np.hstack((matrix, slack)) if isinstance(matrix, np.ndarray) else matrix.beside(slack)
         if self.linear:
             self._constant_jacobian = matrix
         return matrix

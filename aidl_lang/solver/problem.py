@@ -142,16 +142,10 @@ class Problem:
 
     def __post_init__(self) -> None:
         """Fills in what is not given: nothing stands, nothing is rigid, and all unknowns are one thing."""
-        count, groups = len(self.initial), len(self.parent)
-        for name, usual in (
-            ("standing", np.zeros(count, dtype=np.bool_)),
-            ("spanned", np.zeros(count, dtype=np.bool_)),
-            ("rigid", np.zeros(groups, dtype=np.bool_)),
-            ("sealed", np.zeros(count, dtype=np.intp)),
-            ("thing", np.zeros(count, dtype=np.intp)),
-        ):
-            if len(getattr(self, name)) != len(usual):
-                object.__setattr__(self, name, usual)
+        for name in ("standing", "spanned", "rigid", "sealed", "thing"):
+            given, wanted = getattr(self, name), len(self.parent if name == "rigid" else self.initial)
+            if len(given) != wanted:
+                object.__setattr__(self, name, np.zeros(wanted, dtype=given.dtype))
 
     @cached_property
     def constraints(self) -> tuple[Constraint, ...]:

@@ -20,7 +20,6 @@ from aidl_lang.solver.valuation import (
     applied,
     branched,
     combined,
-    gradients,
     scaled,
 )
 
@@ -326,21 +325,12 @@ class Linearised:
     """
 
     def __init__(self, hierarchy: Hierarchy, constraints: Sequence[int], free: Iterable[int]) -> None:
-        rows = hierarchy.rows(constraints)
-        hierarchy.refresh(constraints)
-        found = gradients(hierarchy.values, [row.expression for row in rows])
-        columns = {unknown: k for k, unknown in enumerate(sorted(free))}
-        self.jacobian = np.zeros((len(rows), len(columns)))
-        self.distance = np.zeros(len(rows))
+        rows, columns = hierarchy.rows(constraints), sorted(free)
+        slopes = hierarchy.slopes(constraints, columns)
+        self.jacobian = np.nan_to_num(slopes * hierarchy.problem.scale[columns])
+        self.distance = np.nan_to_num([hierarchy.values.nodes[row.expression] for row in rows])
         self.inequality = np.array([row.relation is Relation.AT_MOST for row in rows], dtype=np.bool_)
         self.owner = np.array(hierarchy.owners(constraints), dtype=np.intp)
-        scale = hierarchy.problem.scale
-        for i, row in enumerate(rows):
-            for unknown, slope in found[row.expression].items():
-                if unknown in columns:
-                    self.jacobian[i, columns[unknown]] = slope * scale[unknown]
-            self.distance[i] = hierarchy.values.nodes[row.expression]
-        self.jacobian, self.distance = np.nan_to_num(self.jacobian), np.nan_to_num(self.distance)
         length = np.linalg.norm(self.jacobian, axis=1)
         size = np.array([row.scale for row in rows])
         flat = length * size <= FAINT * np.abs(self.distance)

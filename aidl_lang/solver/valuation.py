@@ -9,7 +9,8 @@ so that a frame which moves both moves nothing in their difference.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+import math
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
 from typing import TypeAlias
@@ -63,21 +64,8 @@ class Valuation:
         sizes = self.kept & free
         found = self._forms.get(sizes)
         if found is None or not found.is_fresh:
-            value_of = self._value_of(sizes)
-            found = self._forms[sizes] = Forms(self.tape, self.unknowns, self.kept - sizes, value_of)
+            found = self._forms[sizes] = Forms(self, sizes)
         return found
-
-    def _value_of(self, sizes: frozenset[int]) -> Callable[[int], float | None]:
-        """Returns a function for the value of a node that hangs on kept sizes but `sizes` alone, or None."""
-        still = self.still(sizes)
-
-        def value(node: int) -> float | None:
-            if not still[node]:
-                return None
-            self._settle([node])
-            return self.nodes[node]
-
-        return value
 
     def still(self, sizes: frozenset[int] = frozenset()) -> bytes:
         """Returns for each node whether it hangs on kept sizes alone, none of `sizes` among them."""
@@ -138,11 +126,11 @@ class Valuation:
         for node, unknown in cone.inputs:
             nodes[node] = unknowns[unknown]
         if not self._settled.issuperset(cone.still):
-            self._settle(cone.still)
+            self.settle(cone.still)
         run(cone.code, nodes)
         self._fresh.update(cone.roots)
 
-    def _settle(self, roots: Sequence[int]) -> None:
+    def settle(self, roots: Sequence[int]) -> None:
         """Brings nodes that hang on sizes alone up to date, unless they are."""
         ops, operands, settled = self.tape.op_list, self.tape.operand_lists, self._settled
         stack, missing = [root for root in roots if root not in settled], list[int]()
@@ -222,30 +210,22 @@ class Knot:
 
 
 class Forms:
-    """The forms of a tape's nodes with the unknowns `held` at their values, found as they are asked for.
-    `value_of` gives the value of a node that hangs on these alone, or None.
+    """The forms of a tape's nodes with all kept sizes but `sizes` at their values, found as asked for.
 
     The slot of an unknown is its index, that of a knot at node m is m more than there are unknowns.
     """
 
-    def __init__(
-        self,
-        tape: Tape,
-        unknowns: Sequence[float],
-        held: Collection[int],
-        value_of: Callable[[int], float | None],
-    ) -> None:
-        self.width = len(unknowns)
+    def __init__(self, values: Valuation, sizes: frozenset[int]) -> None:
+        self.width = len(values.unknowns)
         self.knots: dict[int, Knot] = {}
-        self._tape, self._unknowns = tape, unknowns
+        self._values, self._still = values, values.still(sizes)
         self._found: dict[int, Form] = {}
-        self._value_of = value_of
-        self._read = {unknown: unknowns[unknown] for unknown in held}
+        self._read = {unknown: values.unknowns[unknown] for unknown in values.kept - sizes}
 
     @property
     def is_fresh(self) -> bool:
         """True if all unknowns that were taken to be held are where they were."""
-        return all(self._unknowns[unknown] == value for unknown, value in self._read.items())
+        return all(self._values.unknowns[unknown] == value for unknown, value in self._read.items())
 
     def __getitem__(self, node: int) -> Form:
         found = self._found.get(node)
@@ -257,13 +237,14 @@ class Forms:
         return [] if isinstance(form, float) else [slot for slot in form.terms if slot >= width]
 
     def _find(self, root: int) -> Form:
-        ops, operands, found = self._tape.op_list, self._tape.operand_lists, self._found
+        values, still, found = self._values, self._still, self._found
+        ops, operands = values.tape.op_list, values.tape.operand_lists
         missing, stack = {root}, [root]
         while stack:
             node = stack.pop()
-            value = self._value_of(node)
-            if value is not None:
-                found[node] = value
+            if still[node]:
+                values.settle([node])
+                found[node] = values.nodes[node]
                 missing.discard(node)
             elif ops[node] > Op.UNKNOWN:
                 for operand in operands[node]:
@@ -337,9 +318,9 @@ def applied(op: int, parts: Sequence[Form]) -> Form | None:
     numbers = [part for part in parts if isinstance(part, float)]
     if len(numbers) == len(parts):
         return evaluate(op, numbers)
-    if op == Op.MUL and numbers and _is_finite(numbers[0]):
+    if op == Op.MUL and numbers and math.isfinite(numbers[0]):
         return scaled(last if isinstance(first, float) else first, numbers[0])
-    if op == Op.DIV and isinstance(last, float) and last != 0.0 and _is_finite(1.0 / last):
+    if op == Op.DIV and isinstance(last, float) and last != 0.0 and math.isfinite(1.0 / last):
         return scaled(first, 1.0 / last)
     return None
 
@@ -365,10 +346,6 @@ def branched(op: int, parts: Sequence[Form]) -> Form | None:
 def evaluate(op: int, operands: Sequence[float]) -> float:
     """Returns the value of one operation on numbers."""
     return VALUE[op](*operands) if len(operands) > 1 else VALUE[op](operands[0], operands[0])
-
-
-def _is_finite(number: float) -> bool:
-    return number - number == 0.0
 
 
 # --- Gradients of many nodes at one place, as sparse matrices; these in their connected parts.
@@ -456,17 +433,14 @@ def linearise(tape: Tape, at: Floats, roots: Ints, among: Bools | None = None) -
         known.update(wanted)
         found = gradients(known, wanted, None if among is None else among.tolist())
         values = np.array([known.nodes[root] for root in wanted])
-        matrix = _sparse([found[root] for root in wanted])
+        columns = np.array([unknown for root in wanted for unknown in found[root]], dtype=np.intp)
+        slopes = np.array([slope for root in wanted for slope in found[root].values()])
+        counts = np.array([len(found[root]) for root in wanted], dtype=np.intp)
+        matrix = Sparse(starts_of(counts), columns, slopes)
     else:
         values, matrix = _all_at_once(tape, at, roots, among)
     sensible = np.abs(matrix.entries) < STEEPEST  # not for those that are not numbers
     return values, replace(matrix, entries=np.where(sensible, matrix.entries, 0.0))
-
-
-def _sparse(rows: Sequence[Gradient]) -> Sparse:
-    starts = np.cumsum([0, *(len(row) for row in rows)], dtype=np.intp)
-    columns = np.array([unknown for row in rows for unknown in row], dtype=np.intp)
-    return Sparse(starts, columns, np.array([slope for row in rows for slope in row.values()]))
 
 
 def _all_at_once(tape: Tape, at: Floats, roots: Ints, among: Bools | None) -> tuple[Floats, Sparse]:

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from functools import cached_property
+from copy import copy
+from functools import cached_property, partial
 from typing import Any, NamedTuple
 
-from lark import Tree, UnexpectedToken
+from lark import UnexpectedToken
+from lark.grammar import Rule
 from lark.lexer import Token as LarkToken
 from lark.parsers.lalr_analysis import Reduce, Shift
 from lark.parsers.lalr_parser_state import ParserState
@@ -14,9 +16,13 @@ from lark.parsers.lalr_parser_state import ParserState
 from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix, Label
 from aidl_lang.common.records import record
 from aidl_lang.common.source import SourceFile, Span
-from aidl_lang.syntax.tables import END, STATEMENT_WORDS, PlacedTree, Token, load_tables
+from aidl_lang.syntax import ast
+from aidl_lang.syntax.tables import END, STATEMENT_WORDS, Reduced, Token, load_tables
 
 # --- Lark's parser at a place in a text, with what recovery asks of it and does to its stacks.
+
+_NO_LEXER: Any = None
+"""In place of Lark's lexer: tokens are fed."""
 
 
 class Checkpoint(NamedTuple):
@@ -25,29 +31,49 @@ class Checkpoint(NamedTuple):
     position: int
     states: list[int]
     values: list[Any]
-    sizes: list[int]  # of the values: Lark lets lists of statements grow in place
+    sizes: list[int]  # of the values: lists of statements grow in place
+    told: int  # of what the builder had to say
+
+
+class _Making(dict[Any, Any]):
+    """What makes the values of rules with a builder; of which most programs have few."""
+
+    def __init__(self, builder: Any) -> None:
+        self.builder = builder
+
+    def __missing__(self, rule: Rule) -> Any:
+        found = self[rule] = partial(load_tables().makers[rule], self.builder)
+        return found
+
+    def __bool__(self) -> bool:
+        return True  # to Lark an empty one says that nothing is made
 
 
 class Automaton:
-    """Lark's interactive parser, and what it has read: its states, with the trees and tokens between them."""
+    """Lark's parser, and what it has read: its states, with the tokens and what was made of them between. A
+    builder makes that, whose `diagnostics` are those of what was kept.
+    """
 
-    def __init__(self) -> None:
-        self.tables = load_tables()
-        self.parser = self.tables.lark.parse_interactive()
-        self.states = self.parser.parser_state.state_stack
-        self.values = self.parser.parser_state.value_stack
+    def __init__(self, builder: Any) -> None:
+        self.tables, self.builder = load_tables(), builder
+        parsing = copy(self.tables.parsing)
+        parsing.callbacks = _Making(builder)
+        self.parser: ParserState[int] = ParserState(parsing, _NO_LEXER)
+        self.states, self.values = self.parser.state_stack, self.parser.value_stack
         self.end = 0  # offset behind the last token taken
-        self.tree: Tree[Token] | None = None  # of the whole text, when its end was taken
+        self.made: tuple[ast.Statement, ...] = ()  # of the whole text, when its end was taken
 
     def feed(self, token: Token) -> bool:
         """Takes one token. Returns False if it cannot stand here; what is before may be complete."""
         if token.kind in self.tables.soft_words:
             token.type = self._type(self.states, token.kind)
         try:
-            self.tree = self.parser.feed_token(token)
+            whole = self.parser.feed_token(token, token.kind == END)
         except UnexpectedToken:
             return False
         self.end = token.end
+        if token.kind == END:
+            self.made = whole.value
         return True
 
     @property
@@ -75,34 +101,38 @@ class Automaton:
     def in_constraints(self) -> bool:
         """True if the innermost block is one of constraints: commas stand among these alone."""
         inner = next(s for s in reversed(self.states) if s in self.tables.statement_states)
-        return self.tables.states[inner].get(self.tables.types[","], (None,))[0] is Shift
+        return self.tables.parsing.states[inner].get(self.tables.types[","], (None,))[0] is Shift
 
     def checkpoint(self, position: int) -> Checkpoint:
         """Returns the stacks before the statement under way. Only when `began_statement`."""
         values = self.values[:-1]
-        sizes = [len(value.children) if isinstance(value, Tree) else 0 for value in values]
-        return Checkpoint(position, self.states[:-1], values, sizes)
+        sizes = [len(value.value) if type(value.value) is list else 0 for value in values]
+        return Checkpoint(position, self.states[:-1], values, sizes, len(self.builder.diagnostics))
 
     def restore(self, checkpoint: Checkpoint) -> None:
         self.states[:] = checkpoint.states
         self.values[:] = checkpoint.values
         for value, size in zip(self.values, checkpoint.sizes, strict=True):
-            if isinstance(value, Tree):
-                del value.children[size:]
+            if type(value.value) is list:
+                del value.value[size:]
+        del self.builder.diagnostics[checkpoint.told :]
 
     def enter_block(self) -> None:
         """Begins the list of statements of a block in which there are none yet."""
-        row = self.tables.states[self.states[-1]]
+        row = self.tables.parsing.states[self.states[-1]]
         action, rule = row.get(self.tables.types[";"], (Shift, None))
         if action is Reduce and not rule.expansion:
             _, reached = row[rule.origin.name]
             if reached in self.tables.statement_states:
                 self.states.append(reached)
-                self.values.append(PlacedTree(rule.origin.name, []))
+                self.values.append(Reduced([], 0, 0))
 
     def drop_statement(self) -> None:
         """Forgets the statement under way, keeping all that stands before it in its block."""
         self.enter_block()
+        if (begin := self.begin) is not None:
+            said = self.builder.diagnostics
+            said[:] = [d for d in said if d.span is not None and d.span.start < begin]
         while not self.between_statements:
             del self.states[-1], self.values[-1]
             self.enter_block()
@@ -136,7 +166,7 @@ class Automaton:
 
     def _takes(self, states: list[int], type_: str) -> bool:
         """Moves a stack of states over a token. Returns False if it cannot stand there."""
-        trial = ParserState(self.tables.without_tree, self.parser.lexer_thread, states, [None] * len(states))
+        trial = ParserState(self.tables.parsing, _NO_LEXER, states, [None] * len(states))
         try:
             trial.feed_token(LarkToken(type_, ""), type_ == END)
         except UnexpectedToken:

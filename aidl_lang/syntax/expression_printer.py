@@ -137,10 +137,13 @@ class ExpressionPrinter:
         """Returns the expression behind `in`: a range without parentheses, or a sum."""
         return self.expression(node, CONDITION if isinstance(node, ast.Range) else SUM)
 
-    def _generator_clause(self, node: ast.Comprehension) -> PrintDocument:
+    def loop(self, node: ast.For | ast.ForArguments | ast.Comprehension) -> PrintDocument:
         variables = ", ".join(map(self.name, node.variables))
+        return doc(f"for {variables} in ", self.iterable(node.iterable))
+
+    def _generator_clause(self, node: ast.Comprehension) -> PrintDocument:
         test = doc(" if ", self.expression(node.condition, OR)) if node.condition else doc()
-        return doc(f" for {variables} in ", self.iterable(node.iterable), test)
+        return doc(" ", self.loop(node), test)
 
     def arguments(self, opening: str, arguments: Sequence[ast.Argument]) -> PrintDocument:
         items = tuple(
@@ -195,9 +198,7 @@ class ExpressionPrinter:
                     loops.append(self._generator_clause(node))
                 return ATOM, doc("[", self.expression(inner.element), *loops, "]")
             case ast.ForArguments():
-                variables = ", ".join(map(self.name, node.variables))
-                head = doc(f"for {variables} in ", self.iterable(node.iterable))
-                return CHOICE, doc(head, self._argument_block(" ", node.body))
+                return CHOICE, doc(self.loop(node), self._argument_block(" ", node.body))
             case ast.IfArguments():
                 head = doc("if ", self.expression(node.test, OR))
                 block = self._argument_block(" ", node.then)

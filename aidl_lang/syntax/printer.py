@@ -24,8 +24,6 @@ from aidl_lang.syntax.expression_printer import (
     string_text,
 )
 
-# --- The lines of a program that is printed, and the comments among them.
-
 
 @record(frozen=False)
 class Line:
@@ -35,14 +33,58 @@ class Line:
     comment: str = ""
 
 
-class CommentedLines:
-    """Lines that are added one after the other, and the comments of a module that are still to be printed."""
+# Formatting twice gives what formatting once gave; all comments stay, and at most one blank line between
+# statements. Attributes stay on the line they were written on while it has room for them. Synonyms of the
+# syntax become one spelling; numbers stay as they were written.
 
-    def __init__(self, module: ast.Module) -> None:
-        self.source = module.source.text
-        self.comments = module.comments
+__all__ = ["format_expression", "format_module", "format_statement"]
+
+_GAP = re.compile(r"(?:\s|//[^\n]*|#[^\n]*|/\*.*?\*/)*", re.DOTALL)
+"""White space and comments."""
+
+
+def format_module(
+    parsed: Parsed | ast.Module,
+    names: Mapping[ast.Node, str] | None = None,
+    stated: Collection[ast.Node] = (),
+    declaring: Collection[ast.Node] = (),
+) -> str:
+    """Returns the text of a program in canonical form.
+
+    stated     calls known to state a constraint, which get the keyword if they stand alone
+    declaring  equations that mean nothing as such and stay as they are
+    names      the spelling to print for nodes (names, identifiers of members and callees)
+
+    Parts that could not be parsed are not in the tree: do not write the text back over a program with syntax
+    errors.
+    """
+    module = parsed if isinstance(parsed, ast.Module) else parsed.module
+    printer = _Printer(module, names, stated, declaring)
+    printer.statements(module.statements, 0, len(module.source.text), 0, constraints=False)
+    return printer.text()
+
+
+def format_statement(statement: ast.Statement, names: Mapping[ast.Node, str] | None = None) -> str:
+    """Returns the text of one statement, without comments."""
+    module = ast.Module(statement.span.source, (statement,), (), span=statement.span)
+    return format_module(module, names).rstrip("\n")
+
+
+class _Printer:
+    def __init__(
+        self,
+        module: ast.Module,
+        names: Mapping[ast.Node, str] | None,
+        stated: Collection[ast.Node],
+        declaring: Collection[ast.Node],
+    ) -> None:
+        self.source, self.comments = module.source.text, module.comments
         self.next_comment = 0
         self.lines: list[Line] = []
+        self.stated, self.declaring = stated, declaring
+        self.expressions = ExpressionPrinter(names)
+
+    # --- Lines, and the comments among them ---
 
     def text(self) -> str:
         """Returns all lines, the trailing comments of neighbouring lines in one column."""
@@ -96,57 +138,6 @@ class CommentedLines:
         self.lines[-1].comment = comment.text.rstrip()
         self.next_comment += 1
         return comment.span.end
-
-
-# Formatting twice gives what formatting once gave; all comments stay, and at most one blank line between
-# statements. Attributes stay on the line they were written on while it has room for them. Synonyms of the
-# syntax become one spelling; numbers stay as they were written.
-
-__all__ = ["format_expression", "format_module", "format_statement"]
-
-_GAP = re.compile(r"(?:\s|//[^\n]*|#[^\n]*|/\*.*?\*/)*", re.DOTALL)
-"""White space and comments."""
-
-
-def format_module(
-    parsed: Parsed | ast.Module,
-    names: Mapping[ast.Node, str] | None = None,
-    stated: Collection[ast.Node] = (),
-    declaring: Collection[ast.Node] = (),
-) -> str:
-    """Returns the text of a program in canonical form.
-
-    stated     calls known to state a constraint, which get the keyword if they stand alone
-    declaring  equations that mean nothing as such and stay as they are
-    names      the spelling to print for nodes (names, identifiers of members and callees)
-
-    Parts that could not be parsed are not in the tree: do not write the text back over a program with syntax
-    errors.
-    """
-    module = parsed if isinstance(parsed, ast.Module) else parsed.module
-    printer = _Printer(module, names, stated, declaring)
-    printer.statements(module.statements, 0, len(module.source.text), 0, constraints=False)
-    return printer.text()
-
-
-def format_statement(statement: ast.Statement, names: Mapping[ast.Node, str] | None = None) -> str:
-    """Returns the text of one statement, without comments."""
-    module = ast.Module(statement.span.source, (statement,), (), span=statement.span)
-    return format_module(module, names).rstrip("\n")
-
-
-class _Printer(CommentedLines):
-    def __init__(
-        self,
-        module: ast.Module,
-        names: Mapping[ast.Node, str] | None,
-        stated: Collection[ast.Node],
-        declaring: Collection[ast.Node],
-    ) -> None:
-        super().__init__(module)
-        self.stated = stated
-        self.declaring = declaring
-        self.expressions = ExpressionPrinter(names)
 
     # --- Lists of statements ---
 
@@ -254,8 +245,7 @@ class _Printer(CommentedLines):
         self._block(block, indent, inner)
         while others:
             block = others[0]
-            chained = block.statements[0] if len(block.statements) == 1 else None
-            if isinstance(chained, ast.If) and chained.span == block.span:
+            if (chained := _chained(block)) is not None:
                 test = self.expressions.expression(chained.test, OR)
                 self._leaf(doc("} else if ", test, " {"), indent)
                 block, *others = self._blocks(chained)
@@ -291,11 +281,8 @@ class _Printer(CommentedLines):
         inner = constraints or isinstance(node, ast.Constrain | ast.ConstraintDefinition)
         text = f"{head} {self._flat_block(blocks[0], inner)}"
         if len(blocks) == 2:
-            chained = blocks[1].statements[0] if len(blocks[1].statements) == 1 else None
-            if isinstance(chained, ast.If) and chained.span == blocks[1].span:
-                text += f" else {self._flat(chained, inner)}"
-            else:
-                text += f" else {self._flat_block(blocks[1], inner)}"
+            chained = _chained(blocks[1])
+            text += f" else {self._flat(chained, inner) if chained else self._flat_block(blocks[1], inner)}"
         return text
 
     def _flat_block(self, block: ast.Block, constraints: bool) -> str:
@@ -351,8 +338,7 @@ class _Printer(CommentedLines):
                 message = doc(", ", expression(node.message, OR)) if node.message else doc()
                 return doc("assert ", expression(node.test, OR), message)
             case ast.For():
-                variables = ", ".join(map(name, node.variables))
-                return doc(f"for {variables} in ", self.expressions.iterable(node.iterable))
+                return self.expressions.loop(node)
             case ast.If():
                 return doc("if ", expression(node.test, OR))
             case ast.Import():
@@ -416,3 +402,9 @@ class _Printer(CommentedLines):
             return doc(f"import {', '.join(map(self.expressions.name, node.names))} from {path}")
         alias = f" as {self.expressions.name(node.alias)}" if node.alias else ""
         return doc(f"import {path}{alias}")
+
+
+def _chained(block: ast.Block) -> ast.If | None:
+    """Returns the `if` that stands behind an `else` without a block of its own."""
+    inner = block.statements[0] if len(block.statements) == 1 else None
+    return inner if isinstance(inner, ast.If) and inner.span == block.span else None

@@ -22,7 +22,7 @@ from aidl_lang.syntax.automaton import (
     statement_end,
     wrong,
 )
-from aidl_lang.syntax.tables import END, STATEMENT_WORDS, Token, begins_line
+from aidl_lang.syntax.tables import END, STATEMENT_WORDS, VALUE_ENDS, Token, begins_line
 
 if TYPE_CHECKING:
     from aidl_lang.parser import Parsed
@@ -139,7 +139,7 @@ def _function_with_body(source: SourceFile, tokens: Sequence[Token], begin: int)
 def _between(source: SourceFile, tokens: Sequence[Token], at: int) -> SyntaxProblem | None:
     end, last = line_end(source.text, tokens[at].start), min(at + LONGEST, len(tokens) - 1)
     middle = next((n for n in range(at + 2, last) if tokens[n].kind == "and"), last)
-    if middle == last or tokens[middle + 1].start > end or tokens[at - 1].kind not in _VALUE_ENDS:
+    if middle == last or tokens[middle + 1].start > end or tokens[at - 1].kind not in VALUE_ENDS:
         return None
     low = tokens[at + 1 : middle]
     span = Span(source, tokens[at].start, tokens[middle + 1].end)
@@ -150,9 +150,6 @@ def _between(source: SourceFile, tokens: Sequence[Token], at: int) -> SyntaxProb
     repair = TokenRepair(0, middle + 1 - at, (word, *low, dots))
     fix = Fix(f"write `{right}`", edits, is_sure=True)
     return wrong("E0109", f"a range is written `{right}`", span, fix=fix, repair=repair)
-
-
-_VALUE_ENDS = frozenset(["NAME", "NUMBER", ")", "]"])
 
 
 def _lambda(source: SourceFile, tokens: Sequence[Token], at: int) -> SyntaxProblem | None:
@@ -188,20 +185,27 @@ def arrow_function(t: Trouble) -> SyntaxProblem | None:
 def _as_function(
     source: SourceFile, head: Sequence[Token], value: Sequence[Token], span: Span, start: int, stop: int
 ) -> SyntaxProblem:
-    names = [token.text for token in head if token.kind == "NAME"]
-    right = f"fn {names[0]}({', '.join(names[1:])}) = {Span(source, value[0].start, value[-1].end).text}"
-    message = f"a function is written `{right}`"
-    repair = TokenRepair(start, stop, tuple(_function(names, head, value, span)))
+    called, *parameters = (token for token in head if token.kind == "NAME")
+    inside = ", ".join(parameter.text for parameter in parameters)
+    right = f"fn {called.text}({inside}) = {Span(source, value[0].start, value[-1].end).text}"
+    message, place = f"a function is written `{right}`", (span.start, span.start)
+    tokens = [Token("fn", "fn", *place), called.but("CALL", called.text + "(")]
+    for i, parameter in enumerate(parameters):
+        tokens += [Token(",", ",", *place), parameter] if i else [parameter]
+    tokens += [Token(")", ")", *place), Token("=", "=", *place), *value]
+    repair = TokenRepair(start, stop, tuple(tokens))
     return wrong("E0113", message, span, fix=replaced("write it so", span, right), repair=repair)
 
 
-def _function(names: Sequence[str], head: Sequence[Token], value: Sequence[Token], span: Span) -> list[Token]:
-    place = span.start, span.start
-    called, *parameters = (token for token in head if token.kind == "NAME")
-    tokens = [Token("fn", "fn", *place), Token("CALL", names[0] + "(", called.start, called.end)]
-    for i, parameter in enumerate(parameters):
-        tokens += [Token(",", ",", *place), parameter] if i else [parameter]
-    return [*tokens, Token(")", ")", *place), Token("=", "=", *place), *value]
+def spaced_call(source: SourceFile, token: Token) -> Diagnostic:
+    """Returns E0114 for a call whose `(` does not touch its name; it is read as the call that was meant."""
+    name = token.text[:-1]
+    gap = Span(source, token.start + len(name), token.end - 1)
+    message = f"the `(` of a call touches its name: `{name}(`"
+    span = Span(source, token.start, token.end)
+    label = "a space ends the name here"
+    hint = "newlines and spaces end no statement, so `f (x)` would be the name `f` and then `(x)`"
+    return Diagnostic("E0114", message, span, label, hints=(hint,), fix=replaced("remove the space", gap, ""))
 
 
 # --- Lists that begin statements.
@@ -221,7 +225,7 @@ def lists_as_statements(source: SourceFile, tokens: list[Token]) -> list[Diagnos
         begins = token.kind == "[" and opened[-1:] in ([], ["{"]) and "CALL" not in opened
         if begins and len(found) < _MOST_LISTS:
             before = tokens[n - 1].kind if n else ";"
-            joined = before in _VALUE_ENDS and begins_line(source.text, token.start)
+            joined = before in VALUE_ENDS and begins_line(source.text, token.start)
             ends = before in _STATEMENT_ENDS and not (asserting and before == ",")
             close = closing(tokens, n) if joined or ends else -1
             after = [t.kind for t in tokens[close + 1 : close + 3]]

@@ -5,19 +5,18 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Callable, Iterator
-from copy import copy
 from dataclasses import field
 from functools import cache
-from operator import itemgetter
+from keyword import iskeyword
 from pathlib import Path
-from typing import Any, cast
+from typing import Any, NamedTuple, cast
 
 import lark
-from lark import Lark, TextSlice, Tree
+from lark import Lark, TextSlice
 from lark.grammar import NonTerminal, Rule, RuleOptions, Terminal
 from lark.lexer import LexerState, PatternRE, PatternStr, TerminalDef
 from lark.lexer import Token as LarkToken
-from lark.parsers.lalr_analysis import Action, Reduce, Shift
+from lark.parsers.lalr_analysis import Reduce, Shift
 from lark.parsers.lalr_parser_state import ParseConf
 
 from aidl_lang.common.records import record
@@ -51,15 +50,16 @@ class _Kept:
 class Tables:
     """Lark's parser, and its terminals by what they are in the text.
 
-    `types` are Lark's names of the terminals whose text is fixed (`==`, `param`), by that text, and `kinds`
-    these the other way around; `patterns` are those of the other terminals, and of these `comments` are no
-    tokens. `reserved` are the words that CALL leaves out, `soft_words` those that are names wherever the
-    grammar has no place for them. In `statement_states` a statement may begin.
+    `parsing` has its states, and makes nothing; `makers` make the value of each rule, from a builder and the
+    symbols. `types` are Lark's names of the terminals whose text is fixed (`==`, `param`), by that text, and
+    `kinds` these the other way around; `patterns` are those of the other terminals, and of these `comments`
+    are no tokens. `reserved` are the words that CALL leaves out, `soft_words` those that are names wherever
+    the grammar has no place for them. In `statement_states` a statement may begin.
     """
 
     lark: Lark
-    without_tree: ParseConf[int]
-    states: dict[int, dict[str, tuple[Action, Any]]]
+    parsing: ParseConf[int]
+    makers: dict[Rule, Callable[[Any, list[Any]], Reduced]]
     types: dict[str, str]
     kinds: dict[str, str]
     patterns: dict[str, str]
@@ -97,7 +97,8 @@ def built() -> bytes:
         del memo[place["@"]]  # four fifths of it say what is alike in all rules
     states, sets, end = _states(made)
     data["options"] = options
-    data["parser"]["parser"] = {"tokens": {}, "states": {}, "start_states": _at(0), "end_states": _at(end)}
+    both = {"start_states": {"module": 0}, "end_states": {"module": end}}
+    data["parser"]["parser"] = {"tokens": {}, "states": {}, **both}
     # Comments are no tokens to the grammar, but the printer needs them.
     space, *comments = data["parser"]["lexer_conf"]["ignore"]
     data["parser"]["lexer_conf"]["ignore"] = [space]
@@ -153,37 +154,43 @@ def _states(made: Lark) -> tuple[list[Any], list[tuple[str, ...]], int]:
     return states, list(sets), numbers[conf.end_state]
 
 
-class PlacedTree(Tree[Any]):
-    """A tree with its place in the text, from `begin` to `until`; from `start` to `end` with the parentheses
-    around it. Lark's own way to places takes a third of all the time.
+class Reduced(NamedTuple):
+    """What a rule made: a value, and its place with the parentheses around it. The members of a list become
+    parts of what the next rule makes.
     """
 
-    begin: int | None = None
-    until = start = end = 0
-
-    @property
-    def meta(self) -> Any:
-        return self
+    value: Any
+    start: int
+    end: int
 
 
-def _placed(rule: Rule, make: Callable[[list[Any]], Any]) -> Callable[[list[Any]], Any]:
-    """Returns what makes the tree of a rule, with its place; most rules hand on one tree."""
-    if rule.options.expand1 and not rule.alias and len(rule.expansion) == 1 and not rule.expansion[0].is_term:
-        return itemgetter(0)
+def _maker(rule: Rule) -> Callable[[Any, list[Any]], Reduced]:
+    """Returns what makes the value of a rule: the method of a builder that has its name, or a list if that
+    begins with `_`.
+    """
+    name = rule.alias or rule.origin.name
+    method = "" if name.startswith("_") else name + "_" * iskeyword(name)
+    is_filtered = [isinstance(s, Terminal) and s.filter_out for s in rule.expansion]
+    kept = [i for i, is_out in enumerate(is_filtered) if rule.options.keep_all_tokens or not is_out]
+    hands_on = rule.options.expand1 and not rule.alias and len(kept) == 1
 
-    def placed(symbols: list[Any]) -> Any:
-        tree = make(symbols)
-        if symbols:
-            tree.start, tree.end = symbols[0].start, symbols[-1].end
-            if tree.begin is None:
-                tree.begin, tree.until = tree.start, tree.end
-        return tree
+    def make(builder: Any, symbols: list[Any]) -> Reduced:
+        start, end = (symbols[0].start, symbols[-1].end) if symbols else (0, 0)
+        if hands_on:
+            return Reduced(symbols[kept[0]].value, start, end)
+        parts: list[Any] = []
+        for i in kept:
+            value = symbols[i].value if type(symbols[i]) is Reduced else symbols[i]
+            if type(value) is not list:
+                parts.append(value)
+            elif parts:
+                parts += value
+            else:
+                parts = value  # which grows in place, as a list of statements is long
+        value = getattr(builder, method)(builder.span(start, end), *parts) if method else parts
+        return Reduced(value, start, end)
 
-    return placed
-
-
-def _at(state: int) -> dict[str, int]:
-    return {"module": state}
+    return make
 
 
 def _types(made: Lark) -> dict[str, str]:
@@ -200,23 +207,19 @@ def decoded(text: bytes) -> Tables:
     kept = json.loads(text)
     memo = {int(number): value for number, value in kept["memo"].items()}
     rules = {place["@"]: _rule(*row) for place, row in zip(kept["data"]["rules"], kept["rules"], strict=True)}
-    kept["data"]["options"]["tree_class"] = PlacedTree
     made = Lark.load({"data": kept["data"], "memo": memo | rules})
     conf = made.parse_interactive().parser_state.parse_conf
     reduce = [(Reduce, rule) for rule in made.rules]
-    callbacks: dict[Any, Any] = conf.callbacks
-    callbacks.update({rule: _placed(rule, made) for rule, made in callbacks.items()})
+    conf.callbacks = {}  # of Lark, which would make trees
     for number, (shifts, *reductions) in enumerate(kept["states"]):
         conf.states[number] = row = {symbol: (Shift, target) for symbol, target in shifts.items()}
         for i in range(0, len(reductions), 2):
             row.update(dict.fromkeys(kept["sets"][reductions[i + 1]], reduce[reductions[i]]))
-    without_tree = copy(conf)
-    without_tree.callbacks = {}
     types, soft_words = _types(made), frozenset(kept["soft_words"])
     return Tables(
         made,
-        without_tree,
-        conf.states,
+        conf,
+        {rule: _maker(rule) for rule in made.rules},
         types,
         {name: text for text, name in types.items()} | dict.fromkeys(_Kept.always_accept, UNKNOWN),
         {t.name: t.pattern.to_regexp() for t in made.terminals if not isinstance(t.pattern, PatternStr)},
@@ -377,10 +380,12 @@ STATEMENT_WORDS = frozenset(
     )
 )
 
-# The tokens that may begin a value.
+# The tokens that may begin a value, and those that may end one.
 VALUE_STARTS = frozenset(
     ["NAME", "NUMBER", "STRING", "CALL", "(", "[", "true", "false", "True", "False", "if", "not"]
 )
+
+VALUE_ENDS = ("NAME", "NUMBER", ")", "]")
 
 # A sign of other languages or of typography, its counterpart here, and a word about it.
 SIGNS: dict[str, tuple[str | None, str]] = {
@@ -394,41 +399,32 @@ SIGNS: dict[str, tuple[str | None, str]] = {
     "π": (None, "write `pi`"), "`": (None, ""), "\\": (None, "statements go on below without a sign"),
 }  # fmt: skip
 
-# A word that begins statements elsewhere: advice, and the word to put in its place if any.
-FOREIGN_WORDS: dict[str, tuple[str, str | None]] = {
-    "def": ("functions are defined as `fn f(x) = 2 * x`", "fn"),
-    "function": ("functions are defined as `fn f(x) = 2 * x`", "fn"),
-    "func": ("functions are defined as `fn f(x) = 2 * x`", "fn"),
-    "fun": ("functions are defined as `fn f(x) = 2 * x`", "fn"),
-    "const": ("a name for a value is given by `let`", "let"),
-    "val": ("a name for a value is given by `let`", "let"),
-    "number": ("values have no type before their name; write `let`", "let"),
-    "float": ("values have no type before their name; write `let`", "let"),
-    "int": ("values have no type before their name; write `let`", "let"),
-    "double": ("values have no type before their name; write `let`", "let"),
-    "parameter": ("a parameter is declared by `param`", "param"),
-    "variable": ("an unknown is declared by `var`", "var"),
-    "elif": ("write `else if`", "else if"),
-    "elseif": ("write `else if`", "else if"),
-    "foreach": ("write `for i in 0..9 { … }`", "for"),
-    "while": ("programs repeat with `for i in 0..9 { … }`", None),
-    "return": ("a function is one expression: `fn f(x) = 2 * x`", None),
-    "class": ("what is made more than once is a template: `solid washer(outer = 20) { … }`", None),
-    "with": ("a structure is written `solid base { … }`", None),
-    "struct": ("a structure begins with its kind: `solid washer { … }`", None),
-    "include": ("other files are named by `import \"file.aidl\"`", "import"),
-    "use": ("other files are named by `import \"file.aidl\"`", "import"),
-    "from": ("names are imported as `import a, b from \"file.aidl\"`", None),
-    "print": ("what holds is stated by `assert`; the solved model shows every value", None),
-    "require": ("what must hold is stated by `constrain` or checked by `assert`", "constrain"),
-    "ensure": ("what must hold is stated by `constrain` or checked by `assert`", "constrain"),
-    "constraints": ("constraints stand in `constrain { … }`", "constrain"),
-    "end": ("a block ends with `}`", None),
-}  # fmt: skip
+# Words that begin statements elsewhere: advice, and the word to put in their place if any.
+_FOREIGN: tuple[tuple[str, str, str | None], ...] = (
+    ("def function func fun", "functions are defined as `fn f(x) = 2 * x`", "fn"),
+    ("const val", "a name for a value is given by `let`", "let"),
+    ("number float int double", "values have no type before their name; write `let`", "let"),
+    ("parameter", "a parameter is declared by `param`", "param"),
+    ("variable", "an unknown is declared by `var`", "var"),
+    ("elif elseif", "write `else if`", "else if"),
+    ("foreach", "write `for i in 0..9 { … }`", "for"),
+    ("while", "programs repeat with `for i in 0..9 { … }`", None),
+    ("return", "a function is one expression: `fn f(x) = 2 * x`", None),
+    ("class", "what is made more than once is a template: `solid washer(outer = 20) { … }`", None),
+    ("with", "a structure is written `solid base { … }`", None),
+    ("struct", "a structure begins with its kind: `solid washer { … }`", None),
+    ("include use", "other files are named by `import \"file.aidl\"`", "import"),
+    ("from", "names are imported as `import a, b from \"file.aidl\"`", None),
+    ("print", "what holds is stated by `assert`; the solved model shows every value", None),
+    ("require ensure", "what must hold is stated by `constrain` or checked by `assert`", "constrain"),
+    ("constraints", "constraints stand in `constrain { … }`", "constrain"),
+    ("end", "a block ends with `}`", None),
+)  # fmt: skip
+FOREIGN_WORDS = {word: (advice, right) for words, advice, right in _FOREIGN for word in words.split()}
 TWO_WAYS = frozenset({"require", "ensure"})
 """Words above that may also be meant otherwise."""
 
-_EXAMPLES = {
+EXAMPLES = {
     "param": "`param` declares a parameter: `param w = 80`",
     "var": "`var` declares an unknown: `var gap = 5`",
     "let": "`let` names a value: `let h = w / 2`",
@@ -452,11 +448,7 @@ _EXAMPLES = {
     "assert": "`assert` checks the result: `assert a.width > 10, \"too narrow\"`",
     "todo": "`todo` marks a body that is still to be written",
 }  # fmt: skip
-
-
-def example(word: str) -> str:
-    """Returns the use of a word of the language, with an example."""
-    return _EXAMPLES.get(word, "")
+"""The use of each word of the language."""
 
 
 def describe(token: Token) -> str:

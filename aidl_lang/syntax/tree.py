@@ -1,4 +1,4 @@
-"""The builder of nodes: for each rule of the grammar, `Nodes` calls the method of `Builder` with its name.
+"""The builder of nodes: for each rule of the grammar the parser calls the method with its name.
 
 Every method takes the place of the rule in the text and the values of its symbols. It reports mistakes that
 the grammar cannot exclude (a second `at`, an unknown kind), beside a node that keeps what was meant.
@@ -8,13 +8,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from keyword import iskeyword
 from typing import Any
-
-from lark.visitors import Transformer_NonRecursive
 
 from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix
 from aidl_lang.common.names import fold, is_slip, nearest
+from aidl_lang.common.records import record
 from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.syntax import ast
 from aidl_lang.syntax.tables import FOREIGN_WORDS, KIND_OF_WORD, KINDS, Token, kind_of
@@ -35,6 +33,49 @@ def under(word: str) -> Callable[..., tuple[str, Any]]:
 
 def handed_on(self: Builder, at: Span, value: Any) -> Any:
     return value
+
+
+def gives(kind: type[ast.Var | ast.Let]) -> Callable[..., Any]:
+    """Returns a method that makes what gives a name a value, and the `if` behind it."""
+
+    def make(self: Builder, at: Span, name: Token, value: Any) -> Any:
+        parts = self.docs.get(at.start), self.identifier(name)
+        return self._ending_in(at, value, lambda v, span: kind(parts[1], v, parts[0], span=span))
+
+    return make
+
+
+def defines(kind: type[ast.ShapeDefinition | ast.ConstraintDefinition]) -> Callable[..., Any]:
+    """Returns a method that makes a definition with a body."""
+
+    def make(self: Builder, at: Span, name: Token, *parts: Any) -> Any:
+        parameters = parts[0] if len(parts) > 1 else ()
+        return kind(self.identifier(name), parameters, parts[-1], self.docs.get(at.start), span=at)
+
+    return make
+
+
+def repeats(kind: type[ast.For | ast.ForArguments], block: Callable[..., Any]) -> Callable[..., Any]:
+    """Returns a method that makes a loop; `for x in a, y in b { … }` is one loop in another."""
+
+    def make(self: Builder, at: Span, variables: Any, iterable: ast.Expression, *rest: Any) -> Any:
+        body = rest[-1]
+        if len(rest) > 1:
+            body = block((make(self, at, *rest),), span=body.span)
+        return kind(variables, iterable, body, span=at)
+
+    return make
+
+
+def chooses(kind: type[ast.If | ast.IfArguments], block: Callable[..., Any]) -> Callable[..., Any]:
+    """Returns a method that makes an `if`; behind `else` another one stands in a block of its own."""
+
+    def make(self: Builder, at: Span, test: ast.Expression, then: Any, other: Any = None) -> Any:
+        if isinstance(other, kind):
+            other = block((other,), span=other.span)
+        return kind(test, then, other, span=at)
+
+    return make
 
 
 class Builder:
@@ -69,7 +110,7 @@ class Builder:
 
     def list(self, at: Span, *items: Any) -> ast.List | ast.Comprehension:
         if items and isinstance(items[0], _Generator):
-            return items[0].comprehension(at)
+            return ast.Comprehension(*items[0].parts, span=at)
         return ast.List(items, span=at)
 
     # --- Places and calls ---
@@ -105,25 +146,8 @@ class Builder:
     def argument_block(self, at: Span, *items: ast.Let | ast.Expression) -> ast.ArgumentBlock:
         return ast.ArgumentBlock(items, span=at)
 
-    def for_arguments(
-        self, at: Span, variables: tuple[ast.Identifier, ...], iterable: ast.Expression, *rest: Any
-    ) -> ast.ForArguments:
-        """Builds `for x in a, y in b { … }` as one loop in another."""
-        body = rest[-1]
-        if len(rest) > 1:
-            body = ast.ArgumentBlock((self.for_arguments(at, *rest),), span=body.span)
-        return ast.ForArguments(variables, iterable, body, span=at)
-
-    def if_arguments(
-        self,
-        at: Span,
-        test: ast.Expression,
-        then: ast.ArgumentBlock,
-        other: ast.ArgumentBlock | ast.IfArguments | None = None,
-    ) -> ast.IfArguments:
-        if isinstance(other, ast.IfArguments):
-            other = ast.ArgumentBlock((other,), span=other.span)
-        return ast.IfArguments(test, then, other, span=at)
+    for_arguments = repeats(ast.ForArguments, ast.ArgumentBlock)
+    if_arguments = chooses(ast.IfArguments, ast.ArgumentBlock)
 
     # --- Operators ---
 
@@ -187,45 +211,33 @@ class Builder:
         for begin, variables, iterable, condition in reversed(loops[1:]):
             span = self.span(begin, at.end)
             element = ast.Comprehension(element, variables, iterable, condition, True, span=span)
-        _, variables, iterable, condition = loops[0]
-        return _Generator(element, variables, iterable, condition, at)
+        return _Generator((element, *loops[0][1:]), at)
 
     # --- Files and blocks ---
 
     def block(self, at: Span, *statements: ast.Statement) -> ast.Block:
         return ast.Block(statements, span=at)
 
-    def module(self, at: Span, *statements: ast.Statement) -> tuple[ast.Statement, ...]:
-        return statements
+    def module(self, at: Span, *items: Any) -> tuple[Any, ...]:
+        return items
+
+    parameters = module
 
     # --- Structures and geometry ---
 
-    def structure(self, at: Span, *parts: Any) -> ast.Structure:
-        attributes, rest = _split(parts)
-        kind, name = rest[0], rest[1]
-        indices = tuple(i for p in rest if isinstance(p, tuple) and p[0] == "index" for i in p[1])
-        return self._structure(at, attributes, kind, name, indices, None, rest)
-
-    def template(self, at: Span, *parts: Any) -> ast.Structure:
-        attributes, rest = _split(parts)
-        parameters = next((p for p in rest if isinstance(p, tuple)), ())
-        return self._structure(at, attributes, rest[0], rest[1], (), parameters, rest)
-
-    def _structure(
-        self,
-        at: Span,
-        attributes: tuple[ast.Attribute, ...],
-        kind: Token,
-        name: Token,
-        indices: tuple[ast.Expression, ...],
-        parameters: tuple[ast.Parameter, ...] | None,
-        rest: Sequence[Any],
-    ) -> ast.Structure:
-        word = self.identifier(kind)
+    def structure(self, at: Span, *parts: Any, is_template: bool = False) -> ast.Structure:
+        attributes, (kind, name, *rest) = _split(parts)
+        lists = [part for part in rest if isinstance(part, tuple)]
+        parameters = next(iter(lists), ()) if is_template else None
+        indices = () if is_template else tuple(index for _, values in lists for index in values)
         placement = next((p for p in rest if isinstance(p, ast.Placement)), None)
+        word = self.identifier(kind)
         meant = kind_of(word.text) or self._unknown_kind(word)
         head = meant, word, self.identifier(name), indices, parameters, placement, attributes
         return ast.Structure(*head, rest[-1], self.docs.get(at.start), span=at)
+
+    def template(self, at: Span, *parts: Any) -> ast.Structure:
+        return self.structure(at, *parts, is_template=True)
 
     def _unknown_kind(self, word: ast.Identifier) -> str:
         """Reports a word that is no kind. Returns the nearest kind, which is assumed."""
@@ -271,9 +283,6 @@ class Builder:
 
     def index(self, at: Span, *values: ast.Expression) -> tuple[str, tuple[ast.Expression, ...]]:
         return "index", values
-
-    def parameters(self, at: Span, *items: ast.Parameter) -> tuple[ast.Parameter, ...]:
-        return items
 
     def parameter(self, at: Span, name: Token, *parts: Any) -> ast.Parameter:
         kind = next((p for p in parts if isinstance(p, ast.Identifier)), None)
@@ -328,13 +337,7 @@ class Builder:
     domain = under("in")
     step = under("step")
 
-    def var(self, at: Span, name: Token, value: Any) -> Any:
-        doc = self.docs.get(at.start)
-        return self._ending_in(at, value, lambda v, span: ast.Var(self.identifier(name), v, doc, span=span))
-
-    def let(self, at: Span, name: Token, value: Any) -> Any:
-        doc = self.docs.get(at.start)
-        return self._ending_in(at, value, lambda v, span: ast.Let(self.identifier(name), v, doc, span=span))
+    var, let = gives(ast.Var), gives(ast.Let)
 
     def function(self, at: Span, name: Token, *parts: Any) -> Any:
         doc, parameters = self.docs.get(at.start), parts[0] if len(parts) > 1 else ()
@@ -347,22 +350,19 @@ class Builder:
     def alias(self, at: Span, name: Token, target: Token) -> ast.Alias:
         return ast.Alias(self.identifier(name), self.identifier(target), self.docs.get(at.start), span=at)
 
-    def shape(self, at: Span, name: Token, *parts: Any) -> ast.ShapeDefinition:
-        parameters = parts[0] if len(parts) > 1 else ()
-        doc = self.docs.get(at.start)
-        return ast.ShapeDefinition(self.identifier(name), parameters, parts[-1], doc, span=at)
+    shape, constraint = defines(ast.ShapeDefinition), defines(ast.ConstraintDefinition)
 
-    def import_(self, at: Span, path: Token) -> ast.Import:
-        return ast.Import(self.string(self.span(path.start, path.end), path), None, (), span=at)
-
-    def import_as(self, at: Span, path: Token, name: Token) -> ast.Import:
+    def import_(
+        self, at: Span, path: Token, alias: Token | None = None, names: Sequence[Token] = ()
+    ) -> ast.Import:
         text = self.string(self.span(path.start, path.end), path)
-        return ast.Import(text, self.identifier(name), (), span=at)
+        called = None if alias is None else self.identifier(alias)
+        return ast.Import(text, called, tuple(map(self.identifier, names)), span=at)
+
+    import_as = import_
 
     def import_names(self, at: Span, *parts: Token) -> ast.Import:
-        *names, path = parts
-        text = self.string(self.span(path.start, path.end), path)
-        return ast.Import(text, None, tuple(map(self.identifier, names)), span=at)
+        return self.import_(at, parts[-1], None, parts[:-1])
 
     todo = makes(ast.Todo)
 
@@ -380,12 +380,6 @@ class Builder:
             return ast.Constrain(ast.Block((item,), span=item.span), False, span=span)
 
         return self._ending_in(at, value, make)
-
-    def constraint(self, at: Span, name: Token, *parts: Any) -> ast.ConstraintDefinition:
-        parameters = parts[0] if len(parts) > 1 else ()
-        return ast.ConstraintDefinition(
-            self.identifier(name), parameters, parts[-1], self.docs.get(at.start), span=at
-        )
 
     def item_constrain(self, at: Span, value: Any) -> Any:
         """Returns the items of a `constrain` inside `constrain`, which adds nothing."""
@@ -413,45 +407,15 @@ class Builder:
 
     # --- Control ---
 
-    def for_(
-        self, at: Span, variables: tuple[ast.Identifier, ...], iterable: ast.Expression, *rest: Any
-    ) -> ast.For:
-        """Builds `for x in a, y in b { … }` as one loop in another."""
-        body = rest[-1]
-        if len(rest) > 1:
-            body = ast.Block((self.for_(at, *rest),), span=body.span)
-        return ast.For(variables, iterable, body, span=at)
+    for_, if_ = repeats(ast.For, ast.Block), chooses(ast.If, ast.Block)
 
-    def if_(
-        self, at: Span, test: ast.Expression, then: ast.Block, other: ast.Block | ast.If | None = None
-    ) -> ast.If:
-        if isinstance(other, ast.If):
-            other = ast.Block((other,), span=other.span)
-        return ast.If(test, then, other, span=at)
-
-    def interrupted(
-        self,
-        at: Span,
-        value: ast.Expression,
-        word: Token,
-        test: ast.Expression,
-        then: ast.Block,
-        otherwise: ast.Block | ast.If | None = None,
-    ) -> ThenIf:
+    def interrupted(self, at: Span, value: ast.Expression, word: Token, *choice: Any) -> ThenIf:
         """Builds an expression, and the `if` statement that begins with `word`."""
-        return ThenIf(value, self.if_(self.span(word.start, at.end), test, then, otherwise))
+        return ThenIf(value, self.if_(self.span(word.start, at.end), *choice))
 
-    def interrupted_argument(
-        self,
-        at: Span,
-        value: ast.Expression,
-        word: Token,
-        test: ast.Expression,
-        then: ast.ArgumentBlock,
-        otherwise: ast.ArgumentBlock | ast.IfArguments | None = None,
-    ) -> ThenIf:
+    def interrupted_argument(self, at: Span, value: ast.Expression, word: Token, *choice: Any) -> ThenIf:
         """Builds an argument, and the block that begins with `word`."""
-        return ThenIf(value, self.if_arguments(self.span(word.start, at.end), test, then, otherwise))
+        return ThenIf(value, self.if_arguments(self.span(word.start, at.end), *choice))
 
     def conditional(self, at: Span, test: ast.Expression, then: ast.Expression, otherwise: Any) -> Any:
         if isinstance(otherwise, ThenIf):
@@ -464,28 +428,19 @@ class Builder:
         return self.conditional(at, test, then, other)
 
 
+@record()
 class _Generator:
     """`element for variables in iterable if condition`, not yet known to stand in brackets or in a call."""
 
-    def __init__(
-        self,
-        element: ast.Expression,
-        variables: tuple[ast.Identifier, ...],
-        iterable: ast.Expression,
-        condition: ast.Expression | None,
-        span: Span,
-    ) -> None:
-        self.parts = (element, variables, iterable, condition)
-        self.span = span
-
-    def comprehension(self, span: Span) -> ast.Comprehension:
-        return ast.Comprehension(*self.parts, span=span)
+    parts: tuple[ast.Expression, tuple[ast.Identifier, ...], ast.Expression, ast.Expression | None]
+    span: Span
 
 
 def arguments_of(value: Any) -> tuple[ast.Argument, ...]:
     """Returns the arguments of a call; its only one may be a bare comprehension: `sum(a for a in b)`."""
     if isinstance(value, _Generator):
-        return (ast.Argument(None, value.comprehension(value.span), span=value.span),)
+        comprehension = ast.Comprehension(*value.parts, span=value.span)
+        return (ast.Argument(None, comprehension, span=value.span),)
     return tuple(value)
 
 
@@ -512,14 +467,12 @@ def string_value(text: str) -> str:
     return "".join(out)
 
 
+@record()
 class ThenIf:
     """The expression at the end of a statement and the `if` that follows it."""
 
-    __slots__ = ("following", "value")
-
-    def __init__(self, value: ast.Expression, following: ast.If | ast.IfArguments) -> None:
-        self.value = value
-        self.following = following
+    value: ast.Expression
+    following: ast.If | ast.IfArguments
 
 
 def out_of_place(attribute: Span, before: str) -> Diagnostic:
@@ -527,25 +480,6 @@ def out_of_place(attribute: Span, before: str) -> Diagnostic:
     message = f"an attribute stands before a structure or a geometry, not before {before}"
     hint = 'write it in front of the definition it is about: `@color("red") solid a { … }`'
     return Diagnostic("E0119", message, attribute, hints=(hint,))
-
-
-class Nodes(Transformer_NonRecursive[Token, Any]):
-    """Makes the nodes of Lark's tree, with the methods of a builder."""
-
-    def __init__(self, builder: Builder) -> None:
-        super().__init__(visit_tokens=False)
-        self.builder = builder
-
-    def __default__(self, data: str, children: list[Any], meta: Any) -> Any:
-        # A trailing underscore keeps clear of Python's own words.
-        method = getattr(self.builder, data + "_" if iskeyword(data) else data)
-        symbols: list[Any] = []
-        for part in children:
-            if type(part) is list:
-                symbols += part
-            else:
-                symbols.append(part)
-        return method(self.builder.span(meta.begin, meta.until), *symbols)
 
 
 def _split(parts: tuple[Any, ...]) -> tuple[tuple[ast.Attribute, ...], list[Any]]:

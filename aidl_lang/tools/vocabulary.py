@@ -158,7 +158,8 @@ def vocabulary() -> Vocabulary:
     """Returns the words of this installation."""
     tables = load_tables()
     words = tables.reserved | tables.soft_words
-    starts = {tables.kinds.get(name) for state in tables.statement_states for name in tables.states[state]}
+    states = tables.parsing.states
+    starts = {tables.kinds.get(name) for state in tables.statement_states for name in states[state]}
     signs = tables.types.keys() - words
     keywords = {name: _present(listed, words) for name, listed in _KEYWORDS.items()}
     named = _named()

@@ -9,6 +9,7 @@ import pytest
 from aidl_lang.common.source import SourceFile
 from aidl_lang.syntax.automaton import Automaton
 from aidl_lang.syntax.tables import END, KINDS, Token, load_tables, tokenize
+from aidl_lang.syntax.tree import Builder
 from tests.amount import TRIES_ALL
 from tests.grammars.engines import all_programs, engine, syntax_errors
 
@@ -65,7 +66,7 @@ def unexpected(text: str) -> tuple[Token, list[Token]] | None:
     """The first token that cannot stand where it does, and all tokens; before any mending."""
     source = SourceFile("", text)
     tokens = tokenize(source)
-    automaton = Automaton()
+    automaton = Automaton(Builder(source, tokens.docs))
     wrong = next((token for token in tokens.tokens if not automaton.feed(token)), None)
     return (wrong, tokens.tokens) if wrong else None
 
