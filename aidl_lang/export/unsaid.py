@@ -36,8 +36,14 @@ _WHY: Mapping[str, str] = {
 }
 
 
-def unsaid_notes(job: Job, suffix: str, *, cuts: bool) -> list[Diagnostic]:
-    """Returns a note if a file has no place for stated looks; `cuts`: a cutter may read the format."""
+def notes_of(job: Job, suffix: str, *, cuts: bool) -> list[Diagnostic]:
+    """Returns what a file does not hold as it is said; `cuts`: a cutter may read the format."""
+    said = [*_blind_notes(job, suffix), *_followed_notes(job)] if cuts else []
+    return _unsaid_notes(job, suffix, cuts=cuts) + said
+
+
+def _unsaid_notes(job: Job, suffix: str, *, cuts: bool) -> list[Diagnostic]:
+    """Returns a note if a file has no place for stated looks."""
     file = "cutter" if cuts and job.options.for_cutter else suffix.replace(".stp", ".step")
     lost = [name for name, files in _WITHOUT.items() if file in files.split()]
     stated = list(_stated(job.model.root, lost))
@@ -56,7 +62,7 @@ def unsaid_notes(job: Job, suffix: str, *, cuts: bool) -> list[Diagnostic]:
     ]
 
 
-def blind_notes(job: Job, suffix: str) -> list[Diagnostic]:
+def _blind_notes(job: Job, suffix: str) -> list[Diagnostic]:
     """Returns a note on holes that end in their solid, of which a cutter can engrave the outline alone."""
     depths = {path: s.depth for path, s in job.drawing.styles.items() if s.is_blind}
     blind = [path for path in job.drawing.regions if path in depths]
@@ -76,7 +82,7 @@ def blind_notes(job: Job, suffix: str) -> list[Diagnostic]:
     ]
 
 
-def followed_notes(job: Job) -> list[Diagnostic]:
+def _followed_notes(job: Job) -> list[Diagnostic]:
     """Returns notes on layers that a cutter's profile does not know, and on areas that are none."""
     asked, profile = job.options.profile, job.options.followed
     if profile is None:
