@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import field, replace
+from functools import cached_property
 from typing import NamedTuple, TypeAlias
 
 from aidl_lang.common.records import record
@@ -15,6 +16,8 @@ from aidl_lang.geometry.region import Face, Loop
 
 CHARACTER = 0.6
 """Mean width of a character of the font, relative to its size."""
+ANCHORS = {"start": 0.0, "middle": -0.5, "end": -1.0}
+"""Where a text begins, seen from where it is anchored, relative to its width."""
 
 HALO = "halo"
 """The role of what has the colour of the paper: a gap around what lies in front."""
@@ -94,6 +97,54 @@ def polygon(*corners: Vec) -> Face:
     return Face(Loop(tuple(Line(p, q) for p, q in zip(corners, corners[1:] + corners[:1], strict=True))))
 
 
+def arrowhead(tip: Vec, way: Vec, length: float, width: float) -> Face:
+    """Returns an arrowhead that points along `way`, a vector of length 1."""
+    (x, y), (u, v), half = tip, way, width / 2
+    left = x - length * u - half * v, y - length * v + half * u
+    return polygon(tip, left, (x - length * u + half * v, y - length * v - half * u))
+
+
+@record()
+class Block:
+    """A rectangle turned by `angle` degrees about `at`; `sides` in its own frame."""
+
+    at: Vec
+    angle: float
+    sides: Bounds
+
+    @cached_property
+    def axes(self) -> tuple[Vec, Vec]:
+        c, s = math.cos(math.radians(self.angle)), math.sin(math.radians(self.angle))
+        return (c, s), (-s, c)
+
+    @cached_property
+    def corners(self) -> tuple[Vec, ...]:
+        (c, s), _ = self.axes
+        left, bottom, right, top = self.sides
+        at = ((left, bottom), (right, bottom), (right, top), (left, top))
+        return tuple((self.at[0] + c * x - s * y, self.at[1] + s * x + c * y) for x, y in at)
+
+    @cached_property
+    def box(self) -> Bounds:
+        xs, ys = zip(*self.corners, strict=True)
+        return min(xs), min(ys), max(xs), max(ys)
+
+    def overlaps(self, other: Block) -> bool:
+        """Tells whether two rectangles overlap: no side of one has the other beyond it."""
+        a, b = self.box, other.box
+        if a[0] >= b[2] or b[0] >= a[2] or a[1] >= b[3] or b[1] >= a[3]:
+            return False
+        for axis in (*self.axes, *other.axes):
+            (low, high), (first, last) = (block._reach(axis) for block in (self, other))
+            if high <= first or last <= low:
+                return False
+        return True
+
+    def _reach(self, axis: Vec) -> tuple[float, float]:
+        along = [x * axis[0] + y * axis[1] for x, y in self.corners]
+        return min(along), max(along)
+
+
 @record()
 class Curves:
     """Curves drawn as lines."""
@@ -119,15 +170,8 @@ class Text:
     @property
     def box(self) -> Bounds:
         width = CHARACTER * self.size * len(self.text)
-        left = -{"start": 0.0, "middle": 0.5, "end": 1.0}[self.anchor] * width
-        bottom, right, top = -0.25 * self.size, left + width, 0.8 * self.size
-        if not self.angle:
-            return self.at[0] + left, self.at[1] + bottom, self.at[0] + right, self.at[1] + top
-        c, s = math.cos(math.radians(self.angle)), math.sin(math.radians(self.angle))
-        corners = [(left, bottom), (right, bottom), (right, top), (left, top)]
-        xs = [self.at[0] + c * x - s * y for x, y in corners]
-        ys = [self.at[1] + s * x + c * y for x, y in corners]
-        return min(xs), min(ys), max(xs), max(ys)
+        left = ANCHORS[self.anchor] * width
+        return Block(self.at, self.angle, (left, -0.25 * self.size, left + width, 0.8 * self.size)).box
 
 
 @record()
@@ -147,6 +191,10 @@ class Frame:
     color: str
     width: float
     dash: float = 0.0
+
+    @property
+    def ink(self) -> Ink:
+        return Ink(self.color, self.width, (self.dash, 0.7 * self.dash) if self.dash else None)
 
 
 Mark: TypeAlias = Area | Curves | Text | Dot | Frame

@@ -19,6 +19,7 @@ from aidl_lang.common.resources import resource
 from aidl_lang.common.running import checkpoint
 from aidl_lang.export.job import ExportError
 from aidl_lang.export.marks import (
+    ANCHORS,
     Area,
     Curves,
     Dot,
@@ -210,8 +211,7 @@ class _Pen:
                 _add_pieces(path, [Circle(mark.at, mark.radius)])
                 self._canvas.drawPath(path, fill=1)
             case Frame():
-                dash = (mark.dash, 0.7 * mark.dash) if mark.dash else None
-                self._ink(Ink(mark.color, mark.width, dash))
+                self._ink(mark.ink)
                 self._canvas.drawPath(self._frame_path(mark.box))
 
     def _area(self, mark: Area) -> None:
@@ -239,10 +239,8 @@ class _Pen:
 
     def _shade(self, path: Any, gradient: Gradient) -> None:
         """Fills a path with a gradient, as dense as the fill is set to be."""
-        shares, colors = (
-            [stop.share for stop in gradient.stops],
-            [self._color(stop.color) for stop in gradient.stops],
-        )
+        shares = [stop.share for stop in gradient.stops]
+        colors = [self._color(stop.color) for stop in gradient.stops]
         with self._state():
             self._canvas.clipPath(path, stroke=0, fill=0, fillMode=0)
             if gradient.radius is None:
@@ -288,7 +286,7 @@ class _Pen:
         canvas.translate(*mark.at)
         canvas.rotate(mark.angle)
         width = canvas.stringWidth(mark.text, FAMILY, mark.size)
-        left = -{"start": 0.0, "middle": 0.5, "end": 1.0}[mark.anchor] * width
+        left = ANCHORS[mark.anchor] * width
         if mark.halo:
             with self._state():
                 self._text(mark, left, _WHITE, Ink(_WHITE, 0.22 * mark.size, is_round=True))
