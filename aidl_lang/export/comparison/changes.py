@@ -6,13 +6,14 @@ import math
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import field, replace
 from functools import cached_property
-from typing import Any, Literal, TypeAlias
+from typing import Literal, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 from aidl_lang.common.prose import rounded
 from aidl_lang.common.records import record
+from aidl_lang.export.json import Json, contact
 from aidl_lang.geometry.boolean import Contact
 from aidl_lang.geometry.curves import FIELDS, Arc, Circle, Ellipse, Vec, point
 from aidl_lang.geometry.drawing import Drawing
@@ -323,7 +324,6 @@ class Comparison:
 # --- A comparison as plain dicts and lists, for programs.
 
 VERSION = 1
-Json = dict[str, Any]
 
 
 def to_dict(comparison: Comparison) -> Json:
@@ -340,7 +340,7 @@ def to_dict(comparison: Comparison) -> Json:
         "held": list(comparison.held),
         "structures": [_structure(s) for s in comparison.structures],
         "contacts": [
-            {"a": c.a, "b": c.b, "before": _contact(c.before), "after": _contact(c.after)}
+            {"a": c.a, "b": c.b, "before": c.before and _lie(c.before), "after": c.after and _lie(c.after)}
             for c in comparison.contacts
         ],
     }
@@ -378,8 +378,5 @@ def _fields(fields: Fields) -> Mapping[str, list[object]]:
     return {name: list(pair) for name, pair in fields.items()}
 
 
-def _contact(contact: Contact | None) -> Json | None:
-    if contact is None:
-        return None
-    entry = {"relation": contact.relation, "gap": contact.gap, "area": contact.area}
-    return {name: value for name, value in entry.items() if value is not None}
+def _lie(pair: Contact) -> Json:
+    return contact(pair, ("relation", "gap", "area"))
