@@ -125,12 +125,9 @@ class _Characters:
         self._lasts = [last for _, last, _ in self._runs]
 
     def __contains__(self, code: int) -> bool:
-        return self._glyph(code) > 0
+        return self[code] > 0
 
     def __getitem__(self, code: int) -> int:
-        return self._glyph(code)
-
-    def _glyph(self, code: int) -> int:
         """Returns the number of a glyph; 0, which is the sign for a missing character, if there is none."""
         k = bisect_left(self._lasts, code)
         if k == len(self._runs) or self._runs[k][0] > code:

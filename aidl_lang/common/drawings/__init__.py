@@ -11,7 +11,7 @@ from itertools import pairwise
 from pathlib import PurePosixPath
 from typing import TYPE_CHECKING, Any, TypeAlias
 
-from aidl_lang.common.font_files import Curve, Vec, point_of
+from aidl_lang.common.font_files import Curve, Vec, point_of, quadratic
 from aidl_lang.common.names import fold
 from aidl_lang.common.prose import counted, listed
 from aidl_lang.common.records import record
@@ -60,6 +60,11 @@ class Bow:
             self.center[1] + self.u[1] * c + self.v[1] * s,
         )
 
+    def heading(self, t: float) -> Vec:
+        """Returns the derivative at a parameter."""
+        c, s = math.cos(t), math.sin(t)
+        return self.v[0] * c - self.u[0] * s, self.v[1] * c - self.u[1] * s
+
 
 Stroke: TypeAlias = Curve | Bow
 
@@ -68,10 +73,6 @@ def ellipse(center: Vec, u: Vec, v: Vec) -> Bow:
     """Returns a whole ellipse by two conjugate half-diameters."""
     start = center[0] + u[0], center[1] + u[1]
     return Bow(center, u, v, 0.0, TURN, start, start)
-
-
-def circle(center: Vec, radius: float) -> Bow:
-    return ellipse(center, (radius, 0.0), (0.0, radius))
 
 
 def product(outer: Matrix, inner: Matrix) -> Matrix:
@@ -145,7 +146,8 @@ def _furthest(stroke: Stroke, way: Vec) -> float:
     best = max(map(along, ends(stroke)))
     if isinstance(stroke, Bow):
         across, up = along(stroke.u), along(stroke.v)
-        if _passes(stroke, math.atan2(up, across)):
+        ahead = (math.atan2(up, across) - stroke.first) * math.copysign(1.0, stroke.sweep) % TURN
+        if ahead <= abs(stroke.sweep):  # it passes there
             best = max(best, along(stroke.center) + math.hypot(across, up))
         return best
     if len(stroke) < 4:
@@ -155,12 +157,6 @@ def _furthest(stroke: Stroke, way: Vec) -> float:
         s = 1.0 - t
         best = max(best, s * s * s * a + 3 * s * s * t * b + 3 * s * t * t * c + t * t * t * d)
     return best
-
-
-def _passes(bow: Bow, t: float) -> bool:
-    """Tells whether an arc goes through a parameter."""
-    ahead = (t - bow.first) * math.copysign(1.0, bow.sweep) % TURN
-    return ahead <= abs(bow.sweep)
 
 
 def _turning_points(a: float, b: float, c: float, d: float) -> Iterator[float]:
@@ -195,21 +191,13 @@ def as_curves(stroke: Stroke) -> tuple[Curve, ...]:
     for k in range(count):
         first, last = stroke.first + k * step, stroke.first + (k + 1) * step
         start, end = stroke.at(first), stroke.at(last)
+        (dx, dy), (ex, ey) = stroke.heading(first), stroke.heading(last)
         one, two = (
-            _moved(start, _heading(stroke, first), handle),
-            _moved(end, _heading(stroke, last), -handle),
+            (start[0] + dx * handle, start[1] + dy * handle),
+            (end[0] - ex * handle, end[1] - ey * handle),
         )
         found.append((start, one, two, end))
     return tuple(found)
-
-
-def _heading(bow: Bow, t: float) -> Vec:
-    c, s = math.cos(t), math.sin(t)
-    return bow.v[0] * c - bow.u[0] * s, bow.v[1] * c - bow.u[1] * s
-
-
-def _moved(p: Vec, way: Vec, by: float) -> Vec:
-    return p[0] + way[0] * by, p[1] + way[1] * by
 
 
 # --- B-splines as cubic Bézier curves.
@@ -242,14 +230,7 @@ def flat(p: Any) -> Vec:
 
 def _raised(points: list[Vec]) -> Curve:
     """Returns a Bézier curve of a degree up to 3 as a line or a cubic."""
-    while 2 < len(points) < 4:
-        n = len(points)
-        inner = [
-            tuple((k * a + (n - k) * b) / n for a, b in zip(points[k - 1], points[k], strict=True))
-            for k in range(1, n)
-        ]
-        points = [points[0], *((x, y) for x, y in inner), points[-1]]
-    return tuple(points)
+    return quadratic(*points) if len(points) == 3 else tuple(points)
 
 
 def _followed(spline: BSpline, first: float, last: float, near: float, halvings: int) -> Iterator[Curve]:
@@ -425,8 +406,8 @@ class Collector:
                 "simplify it in the program that drew it, or export fewer of its layers",
             )
 
-    def leave_out(self, kind: str, count: int = 1) -> None:
-        self.left_out[kind] = self.left_out.get(kind, 0) + count
+    def leave_out(self, kind: str) -> None:
+        self.left_out[kind] = self.left_out.get(kind, 0) + 1
 
 
 # --- Reading of a drawing file, by the suffix of its name, and the names in it made names of AIDL.

@@ -139,7 +139,8 @@ class _Walk:
         if node.tag in _UNSEEN or node.tag == "":
             return
         style = self._style(node, place.style)
-        if style.get("display") == "none" or (self.is_own and _explains(node)):
+        explains = {"overlay", "dimension", "seam"}.intersection(node.attributes.get("class", "").split())
+        if style.get("display") == "none" or (self.is_own and explains):
             return
         if any(style.get(way, "none") != "none" for way in ("clip-path", "mask")):
             self.found.leave_out("clipped or masked shape")
@@ -321,11 +322,6 @@ class _Walk:
 def _states(node: Node, name: str) -> bool:
     text = node.attributes.get(name, "auto").strip()
     return text not in ("", "auto") and not text.endswith("%")
-
-
-def _explains(node: Node) -> bool:
-    """Tells whether something in a picture of AIDL is no part of what is drawn."""
-    return not {"overlay", "dimension", "seam"}.isdisjoint(node.attributes.get("class", "").split())
 
 
 def _engraved(node: Node, around: _Place) -> tuple[str | None, str | None]:

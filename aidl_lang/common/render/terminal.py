@@ -66,18 +66,13 @@ def _changes(source: SourceFile, edits: list[Edit]) -> Iterator[ChangedLine]:
     tail = _common(old[head:][::-1], new[head:][::-1])
     gone, come = old[head : len(old) - tail], new[head : len(new) - tail]
     number = first + head
-    if not gone:
-        yield from _context(source, number)
+    if not gone and number > 1:
+        yield ChangedLine(number - 1, " ", source.line(number - 1))
     focus = _differing(gone[0], come[0]) if len(gone) == len(come) == 1 else ((0, 0), (0, 0))
     for i, text in enumerate(gone[:_LONGEST]):
         yield ChangedLine(number + i, "-", text, focus[0])
     for i, text in enumerate(come[:_LONGEST]):
         yield ChangedLine(number + i, "+", text, focus[1])
-
-
-def _context(source: SourceFile, number: int) -> Iterator[ChangedLine]:
-    if number > 1:
-        yield ChangedLine(number - 1, " ", source.line(number - 1))
 
 
 def _patched(source: SourceFile, edits: list[Edit], first: int, last: int) -> list[str]:
@@ -89,20 +84,15 @@ def _patched(source: SourceFile, edits: list[Edit], first: int, last: int) -> li
     return [line.rstrip("\r") for line in text.split("\n")]
 
 
-def _common(a: list[str], b: list[str]) -> int:
-    """Returns the number of items that two lists have in common at their beginning."""
-    count = 0
-    for x, y in zip(a, b, strict=False):
-        if x != y:
-            break
-        count += 1
-    return count
+def _common(a: Sequence[str], b: Sequence[str]) -> int:
+    """Returns the number of items that two texts or lists have in common at their beginning."""
+    return next((k for k, (x, y) in enumerate(zip(a, b, strict=False)) if x != y), min(len(a), len(b)))
 
 
 def _differing(a: str, b: str) -> tuple[tuple[int, int], tuple[int, int]]:
     """Returns the range of each text that the other does not share."""
-    head = _common(list(a), list(b))
-    tail = _common(list(a[head:])[::-1], list(b[head:])[::-1])
+    head = _common(a, b)
+    tail = _common(a[head:][::-1], b[head:][::-1])
     return (head, len(a) - tail), (head, len(b) - tail)
 
 
@@ -150,7 +140,8 @@ class _Page:
             yield self._arrow(arrow, source, marks)
             yield from self._excerpt(source, marks)
             arrow = ":::"
-        notes = [*(("hint", hint) for hint in self.diagnostic.hints), *self._fix_title()]
+        notes = [("hint", hint) for hint in self.diagnostic.hints]
+        notes += [("fix", self.diagnostic.fix.title)] if self.diagnostic.fix else []
         if notes and self.marks:
             yield self._bar()
         for kind, text in notes:
@@ -174,12 +165,9 @@ class _Page:
         for number, text in excerpt.rows():
             yield self._bar(text, number)
 
-    def _bar(self, text: str = "", number: int | None = None, sign: str = "|") -> str:
+    def _bar(self, text: str = "", number: int | None = None) -> str:
         head = "" if number is None else str(number)
-        return (self.style.gutter(f"{head:>{self.gutter}} {sign}") + " " + text).rstrip()
-
-    def _fix_title(self) -> list[tuple[str, str]]:
-        return [("fix", self.diagnostic.fix.title)] if self.diagnostic.fix else []
+        return (self.style.gutter(f"{head:>{self.gutter}} |") + " " + text).rstrip()
 
     def _note(self, kind: str, text: str) -> Iterator[str]:
         lead = self.style.gutter(" " * self.gutter + " =") + " " + self.style.strong(f"{kind}: ")
