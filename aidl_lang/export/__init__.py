@@ -65,11 +65,8 @@ class Exporter:
         from aidl_lang.export.cut_list import jobs_of_parts
 
         if suffix in (".json", ".csv"):
-            raise ExportError(
-                "E0926",
-                f"`{suffix}` tells of the whole, and is not written part by part",
-                "give it a name without `{part}`",
-            )
+            message = f"`{suffix}` tells of the whole, and is not written part by part"
+            raise ExportError("E0926", message, "give it a name without `{part}`")
         _check(replace(self._job.options, sheet=None, nest=None, show=frozenset()), suffix, FORMATS[suffix])
         job, notes = self._grown if self._job.options.kerf else (self._job, [])
         made = []
@@ -137,17 +134,13 @@ def _check(options: Options, suffix: str, wanted: Format) -> None:
     refuse("--tile", options.tile is not None, "tiles")
     refuse("--theme", options.theme != "colour", "tiles")
     if options.theme not in ("colour", "cutter") and options.for_cutter:
-        raise ExportError(
-            "E0924",
-            f"`--theme {options.theme}` colours a picture, and a cutter goes by colours of its own",
-            "write it to a file of its own, without `--cut`, `--profile`, `--sheet` and `--kerf`",
-        )
+        message = f"`--theme {options.theme}` colours a picture, and a cutter goes by colours of its own"
+        hint = "write it to a file of its own, without `--cut`, `--profile`, `--sheet` and `--kerf`"
+        raise ExportError("E0924", message, hint)
     if options.dimension and options.for_cutter and wanted.cuts:
-        raise ExportError(
-            "E0924",
-            "`--dimension` explains the assembled drawing and has no place among what a cutter follows",
-            "write it to a file of its own, without `--cut`, `--profile`, `--sheet` and `--kerf`",
-        )
+        message = "`--dimension` explains the assembled drawing and has no place among what a cutter follows"
+        hint = "write it to a file of its own, without `--cut`, `--profile`, `--sheet` and `--kerf`"
+        raise ExportError("E0924", message, hint)
 
 
 def suffix_of(

@@ -27,11 +27,8 @@ def jobs_of_parts(job: Job) -> Iterator[tuple[Item, Job]]:
     is_on_sheets = options.sheet is not None
     if options.dimension or (options.show and not (is_on_sheets and options.show.issubset(ON_SHEETS))):
         option = "--dimension" if options.dimension else f"--show {','.join(sorted(options.show))}"
-        raise ExportError(
-            "E0926",
-            f"`{option}` explains the whole drawing and has no place in files of single parts",
-            "write it to a file of its own",
-        )
+        message = f"`{option}` explains the whole drawing and has no place in files of single parts"
+        raise ExportError("E0926", message, "write it to a file of its own")
     items = job.cut_list.items
     if not items:
         raise ExportError(

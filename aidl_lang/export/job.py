@@ -187,11 +187,8 @@ def is_pattern(name: str) -> bool:
                 ),
             )
     if words and not set(words) & set(_TELLING):
-        raise ExportError(
-            "E0926",
-            f"`{name}` is one name for several parts",
-            "name them apart: with `{part}`, or with `{number}`",
-        )
+        message = f"`{name}` is one name for several parts"
+        raise ExportError("E0926", message, "name them apart: with `{part}`, or with `{number}`")
     return bool(words)
 
 

@@ -113,11 +113,8 @@ def tiled(picture: Picture, page: Size, overlap: float = OVERLAP) -> list[Pictur
     across = _Row.over(left, right, window[0], overlap)
     down = _Row.over(-top, -bottom, window[1], overlap)  # rows count from the top
     if across.count * down.count > MOST_PAGES:
-        raise ExportError(
-            "E0924",
-            f"{across.count * down.count} pages are more than {MOST_PAGES}",
-            "give a larger `--tile`",
-        )
+        message = f"{across.count * down.count} pages are more than {MOST_PAGES}"
+        raise ExportError("E0924", message, "give a larger `--tile`")
     crosses = [(x, -y) for x in across.seams(overlap) for y in down.quarters()]
     crosses += [(x, -y) for x in across.quarters() for y in down.seams(overlap)]
     shapes = [[(mark, _Shape(mark)) for mark in group.marks] for group in picture.groups]
@@ -142,11 +139,8 @@ def tiled(picture: Picture, page: Size, overlap: float = OVERLAP) -> list[Pictur
 
 def _check(page: Size, window: Size, overlap: float) -> None:
     if min(page) < SMALLEST_PAGE:
-        raise ExportError(
-            "E0924",
-            f"a page of {size_text(page)} is too small for tiles",
-            f"each side must have {fixed(SMALLEST_PAGE)} mm at least",
-        )
+        message = f"a page of {size_text(page)} is too small for tiles"
+        raise ExportError("E0924", message, f"each side must have {fixed(SMALLEST_PAGE)} mm at least")
     if overlap > min(window) / 2:
         raise ExportError(
             "E0924",

@@ -75,6 +75,10 @@ def ellipse(center: Vec, u: Vec, v: Vec) -> Bow:
     return Bow(center, u, v, 0.0, TURN, start, start)
 
 
+def circle(center: Vec, radius: float) -> Bow:
+    return ellipse(center, (radius, 0.0), (0.0, radius))
+
+
 def product(outer: Matrix, inner: Matrix) -> Matrix:
     """Returns the map that does `inner` first."""
     a, b, c, d, e, f = outer
@@ -385,11 +389,9 @@ class Collector:
         for number in (n for stroke in found for n in numbers(stroke)):
             if not math.isfinite(number) or abs(number) > FURTHEST:
                 named = f" in `{names[-1]}`" if names else ""
-                raise DrawingError(
-                    "E0364",
-                    f"`{self.what}` reaches further than {FURTHEST / 1e6:g} km from its origin{named}",
-                    "look whether a coordinate or a transform in it is what was meant",
-                )
+                message = f"`{self.what}` reaches further than {FURTHEST / 1e6:g} km from its origin{named}"
+                hint = "look whether a coordinate or a transform in it is what was meant"
+                raise DrawingError("E0364", message, hint)
         if kept:
             self.elements.append(Element(tuple(names), kept, is_winding, engraving))
 
@@ -400,11 +402,8 @@ class Collector:
 
     def check(self) -> None:
         if self.curves > MOST_CURVES or self.numbers > MOST_NUMBERS:
-            raise DrawingError(
-                "E0363",
-                f"`{self.what}` has more than {MOST_CURVES:,} curves",
-                "simplify it in the program that drew it, or export fewer of its layers",
-            )
+            hint = "simplify it in the program that drew it, or export fewer of its layers"
+            raise DrawingError("E0363", f"`{self.what}` has more than {MOST_CURVES:,} curves", hint)
 
     def leave_out(self, kind: str) -> None:
         self.left_out[kind] = self.left_out.get(kind, 0) + 1

@@ -9,7 +9,7 @@ from dataclasses import field
 from itertools import pairwise
 from xml.parsers import expat
 
-from aidl_lang.common.drawings import STILL, TURN, Bow, DrawingError, Matrix, Stroke, ellipse, product
+from aidl_lang.common.drawings import STILL, TURN, Bow, DrawingError, Matrix, Stroke, circle, ellipse, product
 from aidl_lang.common.font_files import Vec, quadratic
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
@@ -45,11 +45,9 @@ def read(data: bytes, path: str) -> Node:
         reader.parser.Parse(data, True)
     except expat.ExpatError as reason:
         what = expat.ErrorString(reason.code)
-        raise DrawingError(
-            "E0362",
-            f"`{path}` is not well-formed: {what} in line {reason.lineno}",
-            "save it anew as plain SVG in the program that drew it",
-        ) from None
+        message = f"`{path}` is not well-formed: {what} in line {reason.lineno}"
+        hint = "save it anew as plain SVG in the program that drew it"
+        raise DrawingError("E0362", message, hint) from None
     except (LookupError, ValueError):  # an encoding that is unknown, or takes several bytes
         raise DrawingError(
             "E0362", f"`{path}` is in an encoding that is not known", "save it anew as UTF-8"
@@ -352,7 +350,7 @@ def _strokes(node: Node, page: tuple[float, float]) -> Iterator[Stroke]:
         case "circle":
             radius = pixels(node.attributes.get("r", "0"), math.hypot(*page) / math.sqrt(2))
             if radius > 0.0:
-                yield ellipse((length("cx", 0), length("cy", 1)), (radius, 0.0), (0.0, radius))
+                yield circle((length("cx", 0), length("cy", 1)), radius)
         case "ellipse":
             a, b = _radii(node, page)
             if a > 0.0 and b > 0.0:

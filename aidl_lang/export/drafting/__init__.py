@@ -262,11 +262,8 @@ def _laid(content: Content, draft: Draft, standard: Standard) -> _Laid:
     if best is None:
         where = "any paper" if draft.paper is None else f"{choices[0].label} paper"
         at = f" at {scale_text(draft.scale)}" if draft.scale is not None else ""
-        raise ExportError(
-            "E0970",
-            f"`{content.subject.path}` does not fit on {where}{at} with its dimensions",
-            "leave out `--scale` and `--paper` to have them chosen",
-        )
+        message = f"`{content.subject.path}` does not fit on {where}{at} with its dimensions"
+        raise ExportError("E0970", message, "leave out `--scale` and `--paper` to have them chosen")
     return best
 
 
