@@ -73,33 +73,24 @@ def grown(job: Job, progress: Progress) -> tuple[Job, list[Diagnostic]]:
     """Returns the job with its outlines widened by half the cut, with notes. `progress` hears of it."""
     if not job.options.kerf:
         return job, []
-    notes = twice_compensated(job.model.root, job.options.kerf)
     drawing, slits = _widened(job, job.options.kerf / 2, progress)
-    notes += _slit_notes(job, slits)
+    notes = [*twice_compensated(job.model.root, job.options.kerf), *_slit_notes(job, slits)]
     return replace(job, drawing=drawing, whole=job), notes
 
 
 def laid_on_sheets(job: Job, sheet: Size, spacing: float) -> tuple[list[Job], list[Diagnostic]]:
     """Returns a job for each sheet, with notes; raises ExportError if the parts cannot be laid out."""
     if unfit := sorted(job.options.show.difference(ON_SHEETS)):
-        raise ExportError(
-            "E0924",
-            f"`--show {','.join(unfit)}` explains the assembled drawing and has no place on cut sheets",
-            "`--show names,numbers` writes the names and numbers of the parts on them",
-        )
+        message = f"`--show {','.join(unfit)}` explains the assembled drawing and has no place on cut sheets"
+        hint = "`--show names,numbers` writes the names and numbers of the parts on them"
+        raise ExportError("E0924", message, hint)
     if min(sheet) <= 2 * spacing:
-        raise ExportError(
-            "E0924",
-            f"a sheet of {size_text(sheet)} has no room within a spacing of {fixed(spacing)} mm",
-            "give a larger `--sheet` or a smaller `--spacing`",
-        )
+        message = f"a sheet of {size_text(sheet)} has no room within a spacing of {fixed(spacing)} mm"
+        raise ExportError("E0924", message, "give a larger `--sheet` or a smaller `--spacing`")
     count = sum(body.style.quantity for body in job.drawing.bodies)
     if not count:
-        raise ExportError(
-            "E0924",
-            "there is no part to lay on a sheet",
-            "only a `solid` is cut; a `drawing` is engraved on it",
-        )
+        message = "there is no part to lay on a sheet"
+        raise ExportError("E0924", message, "only a `solid` is cut; a `drawing` is engraved on it")
     if count > MOST_PARTS:
         message = f"{count} parts are more than the {MOST_PARTS} that are laid on sheets"
         raise ExportError("E0924", message, "draw them in several programs")
@@ -108,11 +99,9 @@ def laid_on_sheets(job: Job, sheet: Size, spacing: float) -> tuple[list[Job], li
     try:
         layout = laid_out(job.model.root, job.drawing, sheet, spacing, job.options.nest)
     except NestingError as reason:
-        raise ExportError(
-            "E0924",
-            f"the parts could not be packed by their outlines: {reason}",
-            "leave `--nest` out: they are packed by their boxes then",
-        ) from None
+        message = f"the parts could not be packed by their outlines: {reason}"
+        hint = "leave `--nest` out: they are packed by their boxes then"
+        raise ExportError("E0924", message, hint) from None
     if layout.oversize:
         raise _oversize(layout.oversize, sheet, spacing)
     notes = [_stray_note(job.model, layout.strays)] if layout.strays else []
@@ -183,11 +172,8 @@ def _widened(job: Job, by: float, progress: Progress) -> tuple[Drawing, dict[str
     for body in drawing.bodies:
         region = regions[body.path]
         if len(region.loops) != len(filled[body.path][0].loops):
-            raise ExportError(
-                "E0924",
-                f"holes or gaps of `{body.path}` are narrower than a cut of {fixed(2 * by)} mm",
-                "widen them, or give a smaller `--kerf`",
-            )
+            message = f"holes or gaps of `{body.path}` are narrower than a cut of {fixed(2 * by)} mm"
+            raise ExportError("E0924", message, "widen them, or give a smaller `--kerf`")
         region = _smoothed(region, job.options.tolerance)
         bodies.append(replace(body, region=region, box=region_bounds(region)))
     slits = {path: found for path, (_, found) in filled.items()}
