@@ -14,8 +14,8 @@ from aidl_lang.common.records import record
 from aidl_lang.export.job import ON_SHEETS, Exported, ExportError, Job, Options, Progress, require
 
 if TYPE_CHECKING:
-    from aidl_lang.export.cut_list import Item
     from aidl_lang.export.marks import Picture
+    from aidl_lang.export.sheets import Item
 
 
 @record()
@@ -62,7 +62,7 @@ class Exporter:
 
     def write_parts(self, suffix: str) -> list[tuple[Item, Exported]]:
         """Writes each different part by itself, flat, its corner at the origin; raises as `export`."""
-        from aidl_lang.export.cut_list import jobs_of_parts
+        from aidl_lang.export.sheets import jobs_of_parts
 
         if suffix in (".json", ".csv"):
             message = f"`{suffix}` tells of the whole, and is not written part by part"
@@ -185,7 +185,7 @@ def _pictures(suffix: str) -> Callable[[Sequence[Job]], Exported]:
         root = jobs[0].model.root
         drawn = [page for job in jobs for page in pages(job)]
         if "list" in jobs[0].options.show:
-            from aidl_lang.export.cut_list import pages as pages_of_list
+            from aidl_lang.export.sheets import pages as pages_of_list
 
             drawn += pages_of_list(jobs)
         return rendered(drawn, suffix, jobs[0].options, (root.doc or root.path).partition("\n")[0])
@@ -221,7 +221,7 @@ FORMATS: dict[str, Format] = {
     ".pdf": Format(_pictures(".pdf"), "PDF, true to scale", cuts=True, tiles=True),
     ".png": Format(_pictures(".png"), "PNG picture", cuts=True, tiles=True),
     ".dxf": Format(_each("dxf", "to_dxf"), "DXF for cutters", cuts=True, inches=True),
-    ".csv": Format(_writer("cut_list", "to_csv"), cuts=True),
+    ".csv": Format(_writer("sheets", "to_csv"), cuts=True),
     ".step": Format(_each("step", "to_step"), "STEP solid", ("OCP", "step")),
     ".stp": Format(_each("step", "to_step"), needs=("OCP", "step")),
     ".stl": Format(_each("mesh", "to_stl"), "STL mesh"),

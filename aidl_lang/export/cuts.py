@@ -13,7 +13,8 @@ import numpy as np
 
 from aidl_lang.common.prose import significant
 from aidl_lang.common.records import record
-from aidl_lang.export.profiles import ENGRAVE, FILL, INNER, OUTER, PLAIN, Profile
+from aidl_lang.export.marks import Area, Curves, Group, Ink, Mark
+from aidl_lang.export.profiles import CUTS, ENGRAVE, FILL, INNER, OUTER, PLAIN, Profile
 from aidl_lang.geometry.boolean import united
 from aidl_lang.geometry.curves import (
     Piece,
@@ -297,3 +298,42 @@ class _HoleEdges:
         near = np.flatnonzero(((self._low <= p) & (p <= self._high)).all(axis=1))
         found = (self._edges[k] for k in reversed(near))
         return [path for path, edge in found if locate(edge, p, self._tolerance) is not None]
+
+
+# --- What a cutter follows, as marks of a picture: outlines and engraved areas in the order of a profile.
+
+
+def followed_groups(model: SolvedModel, drawing: Drawing, profile: Profile) -> Iterator[Group]:
+    """Yields a group for each run of outlines with one operation and one structure."""
+    kinds = {s.path: s.kind for s in model.root.walk()}
+    found = [outline for outline in outlines(model, drawing, profile) if outline.operation]
+    used: dict[str, int] = {}
+
+    def look(outline: Outline) -> tuple[str, str, str | None]:
+        own = outline.style.layer
+        return outline.path, outline.operation, profile.look(own, outline.operation).layer or own
+
+    for (path, operation, layer), run in groupby(found, key=look):
+        name = f"{path}:{operation}"
+        used[name] = count = used.get(name, 0) + 1
+        attributes = {"data-kind": kinds[path], "data-path": path, "data-operation": operation}
+        if layer is not None:
+            attributes["data-layer"] = layer
+        yield Group(name if count == 1 else f"{name}-{count}", tuple(_marks(list(run), profile)), attributes)
+
+
+def _marks(run: Sequence[Outline], profile: Profile) -> Iterator[Mark]:
+    for area, bounding in groupby(run, key=lambda o: o.area):
+        if area:
+            first, *others = bounding
+            face = Face(first.loop, tuple(outline.loop for outline in others))
+            yield Area(face, profile.color(first), None, FILL)
+            continue
+        for outline in bounding:
+            width = profile.look(outline.style.layer, outline.operation).width
+            ink = Ink(profile.color(outline), width)
+            role = "cut" if outline.operation in CUTS else outline.operation
+            if outline.closed:
+                yield Area(Face(outline.loop), None, ink, role)
+            else:
+                yield Curves(outline.pieces, ink, role)

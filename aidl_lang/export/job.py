@@ -20,8 +20,8 @@ from aidl_lang.geometry.drawing import Drawing
 from aidl_lang.geometry.solved import SolvedModel
 
 if TYPE_CHECKING:
-    from aidl_lang.export.cut_list import CutList, Item
     from aidl_lang.export.profiles import Profile
+    from aidl_lang.export.sheets import CutList, Item
 
 
 DXF = ("arcs", "r12", "splines")
@@ -118,7 +118,7 @@ class Job:
     @cached_property
     def cut_list(self) -> CutList:
         """The parts of the whole drawing, those that are equal together, each with its number."""
-        from aidl_lang.export.cut_list import cut_list
+        from aidl_lang.export.sheets import cut_list
 
         return cut_list(self) if self.whole is None else self.whole.cut_list
 

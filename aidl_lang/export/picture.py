@@ -278,7 +278,7 @@ def _whole(job: Job) -> Picture:
 def _drawn(job: Job, size: float, shadows: Iterable[tuple[str, Area]] = ()) -> Iterator[Group]:
     """Yields the groups of the drawing: for a cutter what it follows, else one for each structure."""
     if job.options.followed is not None:
-        from aidl_lang.export.sheets import followed_groups
+        from aidl_lang.export.cuts import followed_groups
 
         return followed_groups(job.model, job.drawing, job.options.followed)
     return _groups(job.model, job.drawing, [*shadows, *_marks(job.model.root, job.drawing, size)])
