@@ -159,11 +159,7 @@ def is_drawing(path: str) -> bool:
     return PurePath(path).suffix.lower() in DRAWINGS
 
 
-_REASONS = {
-    errno.ENOENT: "MISSING",
-    errno.ENOTDIR: "MISSING",
-    errno.EFBIG: "TOO_LARGE",
-}
+_REASONS = {errno.ENOENT: "MISSING", errno.ENOTDIR: "MISSING", errno.EFBIG: "TOO_LARGE"}
 
 
 class ReadFailure(StrEnum):

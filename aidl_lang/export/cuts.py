@@ -272,7 +272,7 @@ class _HoleEdges:
             for piece in loop.pieces
         ]
         self._same: dict[Piece, list[str]] = defaultdict(list)
-        for path, piece in self._edges:
+        for path, piece in reversed(self._edges):  # inner ones first
             for either in (piece, reverse(piece)):
                 self._same[either].append(path)
         boxes = np.array([bounds(piece) for _, piece in self._edges]).reshape(-1, 4)
@@ -282,15 +282,11 @@ class _HoleEdges:
         """Returns the hole that shares an edge with a loop of a body: of several, as where a pin goes through
         parts that lie on each other, the innermost in the body.
         """
-        for found in (self._same_edge, self._beside):  # a piece may have been drawn anew in the loop
-            paths = [path for piece in loop.pieces for path in found(piece)]
+        for found in (self._same.get, self._beside):  # a piece may have been drawn anew in the loop
+            paths = [path for piece in loop.pieces for path in found(piece) or ()]
             if paths:
                 return max(paths, key=lambda path: path.startswith(f"{body}."))
         return None
-
-    def _same_edge(self, piece: Piece) -> Iterable[str]:
-        """Returns the holes with this very edge, inner ones first."""
-        return reversed(self._same.get(piece, []))
 
     def _beside(self, piece: Piece) -> Iterable[str]:
         """Returns the holes on whose edges the middle of a piece lies, inner ones first."""

@@ -11,7 +11,7 @@ from typing import Any
 from aidl_lang.common.colors import rgb
 from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.drawings.dxf import ENGRAVED
-from aidl_lang.common.prose import fixed
+from aidl_lang.common.prose import fixed, shortened
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
 from aidl_lang.common.source import Span
@@ -60,10 +60,7 @@ class Lines:
     """
 
     def __init__(self, document: Any, size: float, is_old: bool = False, units: str = "mm") -> None:
-        self._units = units
-        self._is_old = is_old
-        self._document = document
-        self._size = size
+        self._document, self._size, self._is_old, self._units = document, size, is_old, units
 
     def attributes(self, style: Style) -> dict[str, Any]:
         """Returns the attributes of entities with lines of a style; none where it asks for nothing."""
@@ -168,21 +165,14 @@ class Layers:
             name = f"{allowed[: longest - len(str(count)) - 1]}_{count}"
         self._taken.add(name.casefold())
         if name != wanted:
-            self.notes.append(self._changed_note(wanted, name, taken=count > 1))
+            message = f"the layer `{shortened(wanted, 60)}` is called `{shortened(name, 60)}` in the DXF"
+            why = _ALIKE if count > 1 else self._rules.rule
+            self.notes.append(Diagnostic("W0720", message, self._place(wanted), hints=(why,)))
         return name
 
     def _place(self, layer: str) -> Span | None:
         found = (s.span for s in self._root.walk() if str((*s.attributes.get("layer", ()), "")[0]) == layer)
         return next(found, None)
-
-    def _changed_note(self, wanted: str, name: str, taken: bool) -> Diagnostic:
-        why = _ALIKE if taken else self._rules.rule
-        message = f"the layer `{_short(wanted)}` is called `{_short(name)}` in the DXF"
-        return Diagnostic("W0720", message, self._place(wanted), hints=(why,))
-
-
-def _short(name: str) -> str:
-    return name if len(name) <= 60 else f"{name[:59]}…"
 
 
 # Each outline is one entity: a circle, or a polyline of lines and arcs, closed if the outline is. Curves of
@@ -245,18 +235,11 @@ def _written(document: Any, job: Job, is_old: bool) -> Exported:
         document.header["$MEASUREMENT"] = MEASUREMENT[job.options.units]
     tolerance = None if job.options.dxf == "splines" else job.options.tolerance
     entities = _Entities(document.modelspace(), job.drawing, tolerance, is_old)
-    layers, lines = (
-        Layers(document, job.model, is_old),
-        Lines(document, job.drawing.size, is_old, job.options.units),
-    )
+    layers = Layers(document, job.model, is_old)
+    lines = Lines(document, job.drawing.size, is_old, job.options.units)
     for outline in found:
         checkpoint()
-        if profile is not None:
-            attributes = _followed(outline, profile, layers)
-        else:
-            attributes = {"layer": layers.name(outline.layer)} | lines.attributes(outline.style)
-            if outline.style.color is not None:
-                attributes |= color_attributes(outline.style.color, is_old)
+        attributes = _attributes(outline, profile, layers, lines)
         names = [(BODY, outline.path)] + ([(HOLE, outline.hole)] if outline.hole else [])
         said = [outline.operation, outline.style.layer or ""] if outline.operation in ON_PARTS else []
         if outline.operation in (FILL, SCORE) and not outline.style.layer:
@@ -267,32 +250,33 @@ def _written(document: Any, job: Job, is_old: bool) -> Exported:
             for application, path in names:
                 entity.set_xdata(application, [(1000, text) for text in _split(path)])
     _add_labels(document, labels(job), layers)
-    factor = _scaled(document, job.options.units)
+    factor = 1 / UNITS[job.options.units]
+    if factor != 1:  # it was drawn in mm
+        from ezdxf import transform
+
+        transform.scale_uniform(document.modelspace(), factor)
     if found:
         _set_view(document, job.drawing, factor)
-    _order_classes(document)
+    # The library goes through a set of classes, in another order in each process.
+    document.classes.add_required_classes(document.dxfversion)
+    classes = document.classes.classes
+    for key in sorted(classes):
+        classes.move_to_end(key)
     text = io.StringIO()
     document.write(text)
-    data = text.getvalue().encode(document.output_encoding, errors="dxfreplace")
-    return Exported(data, notes=tuple(layers.notes))
+    return Exported(document.encode(text.getvalue()), notes=tuple(layers.notes))
 
 
-def _scaled(document: Any, units: str) -> float:
-    """Multiplies what was drawn in mm so that it is in `units`, and returns the factor."""
-    from ezdxf import transform
-
-    factor = 1 / UNITS[units]
-    if factor != 1:
-        transform.scale_uniform(document.modelspace(), factor)
-    return factor
-
-
-def _followed(outline: Outline, profile: Profile, layers: Layers) -> dict[str, Any]:
-    """Returns the layer of an outline for a cutter, and its colour where that is not the layer's."""
+def _attributes(outline: Outline, profile: Profile | None, layers: Layers, lines: Lines) -> dict[str, Any]:
+    """Returns the layer of an outline and its looks; for a cutter a colour that is not the layer's."""
+    if profile is None:
+        looks = {"layer": layers.name(outline.layer)} | lines.attributes(outline.style)
+        own = outline.style.color
+        return looks if own is None else looks | color_attributes(own, layers.is_old)
     look, color = profile.look(outline.style.layer, outline.operation), profile.color(outline)
     name = layers.name(look.layer or outline.layer, look)
-    own = {} if layers.colors.get(name) == color else color_attributes(color, layers.is_old)
-    return {"layer": name} | own
+    further = {} if layers.colors.get(name) == color else color_attributes(color, layers.is_old)
+    return {"layer": name} | further
 
 
 def _add_labels(document: Any, texts: Iterable[Text], layers: Layers) -> None:
@@ -308,23 +292,13 @@ def _add_labels(document: Any, texts: Iterable[Text], layers: Layers) -> None:
         made.set_placement(text.at, align=TextEntityAlignment.CENTER)
 
 
-def _order_classes(document: Any) -> None:
-    """Orders the registered classes: the library goes through a set, in another order in each process."""
-    document.classes.add_required_classes(document.dxfversion)
-    classes = document.classes.classes
-    for key in sorted(classes):
-        classes.move_to_end(key)
-
-
 def _set_view(document: Any, drawing: Drawing, factor: float) -> None:
     """Sets extents, limits and a first view that show the drawing with its lengths multiplied."""
     left, bottom, right, top = (factor * side for side in drawing.box)
     space = document.modelspace()
-    space.dxf.extmin, space.dxf.extmax = (left, bottom, 0.0), (right, top, 0.0)
     space.dxf.limmin, space.dxf.limmax = (left, bottom), (right, top)
-    for name, p in (("EXTMIN", (left, bottom, 0.0)), ("EXTMAX", (right, top, 0.0))):
-        document.header[f"${name}"] = p
-    document.header["$LIMMIN"], document.header["$LIMMAX"] = (left, bottom), (right, top)
+    space.dxf.extmin = document.header["$EXTMIN"] = (left, bottom, 0.0)
+    space.dxf.extmax = document.header["$EXTMAX"] = (right, top, 0.0)
     document.set_modelspace_vport(1.1 * factor * drawing.size, ((left + right) / 2, (bottom + top) / 2))
 
 

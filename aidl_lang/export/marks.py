@@ -292,9 +292,13 @@ _SEEN_THROUGH = 0.5
 
 def framed(picture: Picture, proportion: float) -> Picture:
     """Returns the picture with white around it, `proportion` times as wide as high."""
-    left, bottom, right, top = picture.box
-    x = max(0.0, picture.height * proportion - picture.width) / 2
-    y = max(0.0, picture.width / proportion - picture.height) / 2
+    return spaced(picture, picture.height * proportion, picture.width / proportion)
+
+
+def spaced(picture: Picture, width: float, height: float) -> Picture:
+    """Returns the picture with white around it, so wide and high at least."""
+    (left, bottom, right, top), x, y = picture.box, width - picture.width, height - picture.height
+    x, y = max(0.0, x) / 2, max(0.0, y) / 2
     return replace(picture, box=(left - x, bottom - y, right + x, top + y))
 
 

@@ -63,7 +63,9 @@ def placed_bodies(job: Job) -> list[PlacedBody]:
     found = []
     for body in job.drawing.bodies:
         thickness = thickness_of(body, job.options.thickness)
-        _require_size(body, thickness)
+        if thickness is not None and not THINNEST <= thickness <= LARGEST:
+            message = f"`{body.path}` cannot be made a solid: it would be {thickness:g} mm thick"
+            raise ExportError("E0918", message, f"a thickness is from {THINNEST:g} to {LARGEST:g} mm")
         _require_place(body.path, stand[body.path])
         recesses = _recesses(job, body, stand[body.path], thickness) if thickness is not None else ()
         found.append(PlacedBody(body, stand[body.path], thickness, tuple(recesses)))
@@ -126,12 +128,6 @@ def thick_bodies(job: Job) -> tuple[list[PlacedBody], tuple[Diagnostic, ...]]:
         raise ExportError("E0917", have, *_REMEDIES)
     left_out = "is left out" if len(flat) == 1 else "are left out"
     return thick, (Diagnostic("W0725", f"{have} and {left_out}", hints=_REMEDIES),)
-
-
-def _require_size(body: Body, thickness: float | None) -> None:
-    if thickness is not None and not THINNEST <= thickness <= LARGEST:
-        message = f"`{body.path}` cannot be made a solid: it would be {thickness:g} mm thick"
-        raise ExportError("E0918", message, f"a thickness is from {THINNEST:g} to {LARGEST:g} mm")
 
 
 def _require_place(path: str, plane: Plane) -> None:

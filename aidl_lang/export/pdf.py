@@ -6,7 +6,6 @@ import io
 import math
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -32,6 +31,8 @@ from aidl_lang.export.marks import (
     Text,
     resolved,
     scaled,
+    separated,
+    spaced,
 )
 from aidl_lang.export.svg import to_svg
 from aidl_lang.geometry.curves import (
@@ -61,20 +62,13 @@ def font_file() -> str:
 
 def character_notes(pages: Iterable[Picture]) -> tuple[Diagnostic, ...]:
     """Warns of characters in the texts that the font lacks."""
-    texts = (
-        mark.text for page in pages for group in page.groups for mark in group.marks if isinstance(mark, Text)
-    )
+    texts = (mark.text for page in pages for mark in separated(page)[1])
     missing = unknown_characters("".join(dict.fromkeys("".join(texts))))
     if not missing:
         return ()
     shown = first_few([f"`{c}`" if c.isprintable() else f"U+{ord(c):04X}" for c in missing], _NAMED)
-    return (
-        Diagnostic(
-            "W0733",
-            f"the font has no {shown}; texts in the picture show a box in their place",
-            hints=("an SVG is shown with the fonts of the reader's system",),
-        ),
-    )
+    message = f"the font has no {shown}; texts in the picture show a box in their place"
+    return (Diagnostic("W0733", message, hints=("an SVG is shown with the fonts of the reader's system",)),)
 
 
 SLIMMEST = 1 / 100
@@ -91,8 +85,8 @@ def to_png(picture: Picture, pixels: int) -> bytes:
     import resvg_py
     from PIL import Image
 
-    picture = _widened(picture)
     whole = max(picture.width, picture.height)
+    picture = spaced(picture, SLIMMEST * whole, SLIMMEST * whole)
     density = MM_PER_INCH * pixels / whole
     if whole > LARGEST:  # round lines of such a size take resvg for ever, however few pixels they are
         picture = scaled(picture, LARGEST / whole)
@@ -114,13 +108,6 @@ def to_png(picture: Picture, pixels: int) -> bytes:
     with Image.open(io.BytesIO(bytes(drawn))) as image:
         image.convert("RGB").save(data, "PNG", **stated)
     return data.getvalue()
-
-
-def _widened(picture: Picture) -> Picture:
-    left, bottom, right, top = picture.box
-    least = SLIMMEST * max(picture.width, picture.height)
-    x, y = max(0.0, least - picture.width) / 2, max(0.0, least - picture.height) / 2
-    return replace(picture, box=(left - x, bottom - y, right + x, top + y))
 
 
 # --- PDF: pictures at 1:1, one on each page, as vectors with the font embedded.

@@ -45,7 +45,7 @@ from aidl_lang.geometry.curves import (
     points,
     union_bounds,
 )
-from aidl_lang.geometry.drawing import Body, Drawing, Seam, Stroke
+from aidl_lang.geometry.drawing import Body, Drawing, Stroke
 from aidl_lang.geometry.nearness import inside
 from aidl_lang.geometry.region import Polygon, Region, face_polygons, piece_points, region_bounds
 from aidl_lang.geometry.solved import SolvedModel, SolvedStructure
@@ -346,7 +346,9 @@ def _marks(root: SolvedStructure, drawing: Drawing, size: float) -> Iterator[tup
     styles = {body.path: body.style for body in drawing.bodies}
     for seam in drawing.seams:
         if seam.is_asked or not styles[seam.body].is_unlined:
-            yield seam.path, _seam(seam, styles[seam.body], size)
+            ink = Ink(_outline_color(styles[seam.body]), SEAM_WIDTH * size)
+            ink = ink if seam.is_asked else replace(ink, opacity=_SEAM_OPACITY)
+            yield seam.path, Curves(seam.pieces, ink, "seam")
     marks = [(stroke, list(_strokes(stroke, size))) for stroke in drawing.strokes]
     if halos:  # before all lines: those of a drawing, which may join, clear none of its own
         for stroke, own in marks:
@@ -387,11 +389,6 @@ def _filled(
 
 def _outline_color(style: Style) -> str:
     return themes.OUTLINE if style.color is None else themes.outline_of(style.color)
-
-
-def _seam(seam: Seam, style: Style, size: float) -> Curves:
-    ink = Ink(_outline_color(style), SEAM_WIDTH * size, opacity=1.0 if seam.is_asked else _SEAM_OPACITY)
-    return Curves(seam.pieces, ink, "seam")
 
 
 def _strokes(stroke: Stroke, size: float) -> Iterator[Area | Curves]:

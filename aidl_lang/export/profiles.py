@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from aidl_lang.common.colors import css_color, hexadecimal, rgb
 from aidl_lang.common.names import fold, nearest
-from aidl_lang.common.prose import did_you_mean, listed, ticked
+from aidl_lang.common.prose import did_you_mean, listed, shortened, ticked
 from aidl_lang.common.records import record
 from aidl_lang.export.job import ExportError
 
@@ -88,9 +88,6 @@ class Profile:
         if self.keeps_colors and outline.operation not in CUTS and outline.style.color is not None:
             return hexadecimal(rgb(outline.style.color))
         return self.look(outline.style.layer, outline.operation).color
-
-    def with_layers(self, layers: Mapping[str, Layer]) -> Profile:
-        return replace(self, layers={**self.layers, **{fold(name): of for name, of in layers.items()}})
 
 
 def _looks(width: float, *looks: tuple[str, str]) -> dict[str, Look]:
@@ -183,14 +180,14 @@ class _Reader:
         base = PROFILES[self._word(table.get("base", "plain"), PROFILES, "base")]
         looks = {op: self._look(table.get(op, {}), base.looks[op], op, _LOOK) for op in OPERATIONS}
         layers = self._table(table.get("layers", {}), "layers")
-        made = replace(
+        return replace(
             base,
             name=self._name,
             looks=looks,
             order=self._order(table.get("order", list(base.order))),
             letters=self._word(table.get("letters", base.letters), (FILL, ENGRAVE), "letters"),
+            layers={**base.layers, **{fold(k): self._layer(said, k, looks) for k, said in layers.items()}},
         )
-        return made.with_layers({layer: self._layer(said, layer, looks) for layer, said in layers.items()})
 
     def _layer(self, said: Any, layer: str, looks: Mapping[str, Look]) -> Layer:
         where = f"layers.{layer}"
@@ -267,4 +264,4 @@ class _Reader:
 
 def _shown(value: Any) -> str:
     text = f'"{value}"' if isinstance(value, str) else str(value)
-    return f"`{text if len(text) <= 60 else text[:59] + '…'}`"
+    return f"`{shortened(text, 60)}`"

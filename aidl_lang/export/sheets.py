@@ -223,12 +223,9 @@ def _oversize(parts: Sequence[tuple[str, Size]], sheet: Size, spacing: float) ->
 def _stray_note(model: SolvedModel, strays: Sequence[Stroke]) -> Diagnostic:
     spans = {g.path: g.span for s in model.root.walk() for geometry in s.drawn for g in geometry.walk()}
     names = list(dict.fromkeys(stroke.geometry for stroke in strays))
-    return Diagnostic(
-        "W0736",
-        f"what of {named(names)} lies on no part is left off the sheets",
-        spans.get(names[0]),
-        hints=("a drawing inside a `solid` is laid out with it",),
-    )
+    message = f"what of {named(names)} lies on no part is left off the sheets"
+    hint = "a drawing inside a `solid` is laid out with it"
+    return Diagnostic("W0736", message, spans.get(names[0]), hints=(hint,))
 
 
 def _slit_notes(job: Job, slits: Mapping[str, Sequence[Slit]]) -> Iterator[Diagnostic]:
@@ -283,17 +280,13 @@ def _widened(job: Job, by: float, progress: Progress) -> tuple[Drawing, dict[str
 
 def _smoothed(region: Region, tolerance: float) -> Region:
     """Returns the region with outlines that have no pieces too short to be cut."""
-    faces = []
-    for face in region.faces:
-        outer, *holes = (_smooth(loop, tolerance) for loop in face.loops)
-        faces.append(Face(outer, tuple(holes)))
-    return Region(tuple(faces))
 
+    def smooth(loop: Loop) -> Loop:
+        if not has_slivers(loop.pieces, tolerance):
+            return loop
+        return replace(loop, pieces=as_arcs(loop.pieces, closed=True, tolerance=tolerance))
 
-def _smooth(loop: Loop, tolerance: float) -> Loop:
-    if not has_slivers(loop.pieces, tolerance):
-        return loop
-    return replace(loop, pieces=as_arcs(loop.pieces, closed=True, tolerance=tolerance))
+    return Region(tuple(Face(smooth(face.outer), tuple(map(smooth, face.holes))) for face in region.faces))
 
 
 # --- The cut list as CSV, and as pages of a picture.

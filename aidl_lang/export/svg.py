@@ -17,19 +17,7 @@ from typing import Any
 from aidl_lang.common.prose import fixed
 from aidl_lang.common.running import checkpoint
 from aidl_lang.export.job import UNITS
-from aidl_lang.export.marks import (
-    Area,
-    Curves,
-    Dot,
-    Frame,
-    Gradient,
-    Group,
-    Ink,
-    Mark,
-    Picture,
-    Text,
-    scaled,
-)
+from aidl_lang.export.marks import Area, Curves, Dot, Frame, Gradient, Group, Ink, Mark, Picture, Text, scaled
 from aidl_lang.geometry.curves import (
     Arc,
     Bezier,

@@ -56,11 +56,9 @@ def outline_of(fill: str) -> str:
     """Returns the colour of the outline of a body that the author gave a fill: a darker tone of it, and as
     much darker again as it takes to be seen on white.
     """
-    share = _SHADE
-    if (bright := _brightness(rgb(fill))) > 0:
-        share = min(share, _LIGHTEST_OUTLINE / bright)
-    red, green, blue = (share * part for part in rgb(fill))
-    return hexadecimal((red, green, blue))
+    bright = _brightness(rgb(fill))
+    share = min(_SHADE, _LIGHTEST_OUTLINE / bright) if bright > 0 else _SHADE
+    return hexadecimal(share * part for part in rgb(fill))
 
 
 def etched(fill: str) -> str:

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from typing import Any
 
 from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix, Label, Severity
-from aidl_lang.common.prose import counted, listed
+from aidl_lang.common.prose import counted, listed, shortened
 from aidl_lang.common.records import record
 from aidl_lang.common.render.excerpt import Excerpt, Mark, TerminalStyle, escape, mark, window
 from aidl_lang.common.source import SourceFile, Span
@@ -138,7 +138,9 @@ class _Page:
         arrow = "-->"
         for source, marks in self.marks.items():
             yield self._arrow(arrow, source, marks)
-            yield from self._excerpt(source, marks)
+            yield self._bar()
+            excerpt = Excerpt(source, tuple(marks), self.diagnostic.severity, self.style, self.width)
+            yield from (self._bar(text, number) for number, text in excerpt.rows())
             arrow = ":::"
         notes = [("hint", hint) for hint in self.diagnostic.hints]
         notes += [("fix", self.diagnostic.fix.title)] if self.diagnostic.fix else []
@@ -158,12 +160,6 @@ class _Page:
         lead = next((m for m in marks if m.primary), marks[0])
         place = f"{escape(source.name)}:{lead.first}:{lead.start + 1}"
         return " " * self.gutter + self.style.gutter(arrow) + " " + place
-
-    def _excerpt(self, source: SourceFile, marks: list[Mark]) -> Iterator[str]:
-        excerpt = Excerpt(source, tuple(marks), self.diagnostic.severity, self.style, self.width)
-        yield self._bar()
-        for number, text in excerpt.rows():
-            yield self._bar(text, number)
 
     def _bar(self, text: str = "", number: int | None = None) -> str:
         head = "" if number is None else str(number)
@@ -334,8 +330,7 @@ def _place_in_words(span: Span, main: str) -> str:
 
 
 def _quoted(span: Span) -> str:
-    line = escape(span.source.line(span.line).strip())
-    return line if len(line) <= _LONGEST_COMPACT else line[: _LONGEST_COMPACT - 1] + "…"
+    return shortened(escape(span.source.line(span.line).strip()), _LONGEST_COMPACT)
 
 
 def _one_line(text: str) -> str:

@@ -316,36 +316,30 @@ class Comparison:
 
         return text(self)
 
-    def to_dict(self) -> dict[str, object]:
-        """Returns the comparison as plain dicts and lists, numbers to 12 digits."""
-        return to_dict(self)
+    def to_dict(self) -> Json:
+        """Returns plain dicts and lists, numbers to 12 digits; of a pair the first is from before."""
+        document: Json = rounded(
+            {
+                "aidl_diff": VERSION,
+                "units": "mm",
+                "equal": self.is_equal,
+                "status": self.status,
+                "dof": self.degrees,
+                "freed": self.freed,
+                "held": self.held,
+                "structures": [_structure(s) for s in self.structures],
+                "contacts": [
+                    {"a": c.a, "b": c.b, "before": _lie(c.before), "after": _lie(c.after)}
+                    for c in self.contacts
+                ],
+            }
+        )
+        return document
 
 
 # --- A comparison as plain dicts and lists, for programs.
 
 VERSION = 1
-
-
-def to_dict(comparison: Comparison) -> Json:
-    """Returns a comparison as plain data. In every pair, the first value is from before, the second from
-    after; numbers have 12 digits.
-    """
-    document: Json = {
-        "aidl_diff": VERSION,
-        "units": "mm",
-        "equal": comparison.is_equal,
-        "status": list(comparison.status),
-        "dof": list(comparison.degrees),
-        "freed": list(comparison.freed),
-        "held": list(comparison.held),
-        "structures": [_structure(s) for s in comparison.structures],
-        "contacts": [
-            {"a": c.a, "b": c.b, "before": c.before and _lie(c.before), "after": c.after and _lie(c.after)}
-            for c in comparison.contacts
-        ],
-    }
-    result: Json = rounded(document)
-    return result
 
 
 def _structure(s: StructureChange) -> Json:
@@ -378,5 +372,5 @@ def _fields(fields: Fields) -> Mapping[str, list[object]]:
     return {name: list(pair) for name, pair in fields.items()}
 
 
-def _lie(pair: Contact) -> Json:
-    return contact(pair, ("relation", "gap", "area"))
+def _lie(pair: Contact | None) -> Json | None:
+    return None if pair is None else contact(pair, ("relation", "gap", "area"))
