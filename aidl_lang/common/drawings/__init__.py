@@ -11,6 +11,7 @@ from itertools import pairwise
 from pathlib import PurePosixPath
 from typing import TYPE_CHECKING, Any, TypeAlias
 
+from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.font_files import Curve, Vec, point_of, quadratic
 from aidl_lang.common.names import fold
 from aidl_lang.common.prose import counted, listed
@@ -215,7 +216,8 @@ def cubics(entity: Any) -> tuple[list[Curve], bool]:
     """Returns the cubics of a SPLINE, and whether they are the same curve."""
     spline: BSpline = entity.construction_tool()
     if spline.degree <= 3 and not spline.is_rational and spline.is_clamped:
-        return [_raised([flat(p) for p in piece]) for piece in spline.bezier_decomposition()], True
+        pieces = (tuple(map(flat, piece)) for piece in spline.bezier_decomposition())
+        return [quadratic(*piece) if len(piece) == 3 else piece for piece in pieces], True
     points = [flat(p) for p in spline.control_points]
     size = max(max(axis) - min(axis) for axis in zip(*points, strict=True)) or 1.0
     knots = sorted(set(spline.knots()[spline.degree : len(spline.knots()) - spline.degree]))
@@ -230,11 +232,6 @@ def cubics(entity: Any) -> tuple[list[Curve], bool]:
 
 def flat(p: Any) -> Vec:
     return float(p[0]), float(p[1])
-
-
-def _raised(points: list[Vec]) -> Curve:
-    """Returns a Bézier curve of a degree up to 3 as a line or a cubic."""
-    return quadratic(*points) if len(points) == 3 else tuple(points)
 
 
 def _followed(spline: BSpline, first: float, last: float, near: float, halvings: int) -> Iterator[Curve]:
@@ -336,15 +333,6 @@ class Trace:
 
 
 @record(eq=False)
-class Remark:
-    """A thing to be told of a drawing: the code of a diagnostic, its message and hints."""
-
-    code: str
-    message: str
-    hints: tuple[str, ...] = ()
-
-
-@record(eq=False)
 class OutlineFile:
     """A drawing file that was read.
 
@@ -353,7 +341,7 @@ class OutlineFile:
 
     whole: Trace
     parts: Mapping[str, Trace]
-    remarks: tuple[Remark, ...] = ()
+    remarks: tuple[Diagnostic, ...] = ()
 
     def trace(self, name: str) -> Trace:
         """Returns the outlines under a name."""
@@ -456,19 +444,15 @@ def _left_out(found: Collector) -> Iterator[str]:
         yield f"left out: {listed(counts)}"
 
 
-def _told(found: Collector, more: int) -> Iterator[Remark]:
+def _told(found: Collector, more: int) -> Iterator[Diagnostic]:
     for text in _left_out(found):
-        yield Remark(
-            "N0751",
-            f"`{found.what}` has more than outlines; {text}",
-            ("only outlines are imported; in the program that drew it texts can be turned into paths",),
-        )
+        message = f"`{found.what}` has more than outlines; {text}"
+        hint = "only outlines are imported; in the program that drew it texts can be turned into paths"
+        yield Diagnostic("N0751", message, hints=(hint,))
     if more:
-        yield Remark(
-            "N0751",
-            f"`{found.what}` has {more} names beyond the first {MOST_NAMES}, which cannot be used",
-            ("give names to the groups or layers that are needed, and leave the rest without",),
-        )
+        message = f"`{found.what}` has {more} names beyond the first {MOST_NAMES}, which cannot be used"
+        hint = "give names to the groups or layers that are needed, and leave the rest without"
+        yield Diagnostic("N0751", message, hints=(hint,))
 
 
 def _parts(elements: Iterable[Element], kind: str) -> tuple[dict[str, Trace], int]:

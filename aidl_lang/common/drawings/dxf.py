@@ -10,6 +10,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
+from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.drawings import (
     TURN,
     Bow,
@@ -17,7 +18,6 @@ from aidl_lang.common.drawings import (
     DrawingError,
     Engraving,
     Matrix,
-    Remark,
     Stroke,
     cubics,
     ends,
@@ -77,7 +77,7 @@ _FAULTS = (
 logging.getLogger("ezdxf").addHandler(logging.NullHandler())
 
 
-def read(data: bytes, name: str) -> tuple[Collector, list[Remark]]:
+def read(data: bytes, name: str) -> tuple[Collector, list[Diagnostic]]:
     """Returns the elements of a DXF file and what there is to be told of it. Raises DrawingError."""
     document = _loaded(data, name)
     walk = _Walk(document, name)
@@ -132,7 +132,7 @@ class _Walk:
         self.hidden = {layer.dxf.name.lower() for layer in hidden}
         self.unit = _millimetres(document.header.get("$INSUNITS", 0))
 
-    def done(self) -> tuple[Collector, list[Remark]]:
+    def done(self) -> tuple[Collector, list[Diagnostic]]:
         for (names, engraving), strokes in self.open.items():
             self.found.add(names, strokes, engraving=engraving)
         return self.found, list(self._remarks())
@@ -207,25 +207,20 @@ class _Walk:
                 self.fitted += not is_exact
                 yield from curves
 
-    def _remarks(self) -> Iterator[Remark]:
+    def _remarks(self) -> Iterator[Diagnostic]:
         if self.circular:
-            message = (
-                f"`{self.name}` has a block that stands in itself, `{self.circular[0]}`: it is left out there"
-            )
-            yield Remark("W0752", message, ("export it anew in the program that drew it",))
+            block = f"a block that stands in itself, `{self.circular[0]}`"
+            hint = "export it anew in the program that drew it"
+            yield Diagnostic("W0752", f"`{self.name}` has {block}: it is left out there", hints=(hint,))
         if self.fitted:
-            yield Remark(
-                "N0752",
-                f"{counted(self.fitted, 'spline')} of `{self.name}` are followed by cubics, "
-                "to a ten millionth of their size",
-                ("rational splines, and those of a degree above 3, are no Bézier curves",),
-            )
+            splines = f"{counted(self.fitted, 'spline')} of `{self.name}`"
+            message = f"{splines} are followed by cubics, to a ten millionth of their size"
+            hint = "rational splines, and those of a degree above 3, are no Bézier curves"
+            yield Diagnostic("N0752", message, hints=(hint,))
         if self.unit is None and self.found.elements:
-            yield Remark(
-                "N0753",
-                f"`{self.name}` does not say its unit, and is taken to be in millimetres",
-                ("if it is in inches, write `scale: 25.4`; or set `$INSUNITS` where it is drawn",),
-            )
+            message = f"`{self.name}` does not say its unit, and is taken to be in millimetres"
+            hint = "if it is in inches, write `scale: 25.4`; or set `$INSUNITS` where it is drawn"
+            yield Diagnostic("N0753", message, hints=(hint,))
 
 
 def _engraving(entity: Any) -> Engraving | None:

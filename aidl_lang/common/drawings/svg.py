@@ -11,13 +11,13 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 
+from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.drawings import (
     STILL,
     Collector,
     DrawingError,
     Engraving,
     Matrix,
-    Remark,
     Stroke,
     ends,
     mapped,
@@ -74,7 +74,7 @@ class _Place:
     layer: str | None = None
 
 
-def read(data: bytes, name: str) -> tuple[Collector, list[Remark]]:
+def read(data: bytes, name: str) -> tuple[Collector, list[Diagnostic]]:
     """Returns the elements of an SVG file and what there is to be told of it. Raises DrawingError."""
     return _Walk(xml.read(data, name), name).run()
 
@@ -96,7 +96,7 @@ class _Walk:
             if node.tag == "style":
                 self.rules += _rules(node.text)
 
-    def run(self) -> tuple[Collector, list[Remark]]:
+    def run(self) -> tuple[Collector, list[Diagnostic]]:
         width, height, matrix = self._page()
         flip: Matrix = (MM_PER_PIXEL, 0.0, 0.0, -MM_PER_PIXEL, 0.0, height * MM_PER_PIXEL)
         place = _Place(product(flip, matrix), (width, height), {})
@@ -302,21 +302,16 @@ class _Walk:
 
     # --- What is to be told --------------------------------------------------------------------
 
-    def _remarks(self) -> Iterator[Remark]:
-        if self.broken:
-            names = list(dict.fromkeys(self.broken))
-            yield Remark(
-                "W0752",
-                f"`{self.name}` has attributes that cannot be read, in {first_few(ticked(names), 5)}",
-                ("paths are taken as far as they are readable; save it anew in the program that drew it",),
-            )
-        if self.circular:
-            names = list(dict.fromkeys(self.circular))
-            yield Remark(
-                "W0752",
-                f"`{self.name}` refers to itself in {first_few(ticked(names), 5)}, where nothing is drawn",
-                ("a `use` element may not stand in what it refers to",),
-            )
+    def _remarks(self) -> Iterator[Diagnostic]:
+        broken, circular = (ticked(dict.fromkeys(names)) for names in (self.broken, self.circular))
+        if broken:
+            message = f"`{self.name}` has attributes that cannot be read, in {first_few(broken, 5)}"
+            hint = "paths are taken as far as they are readable; save it anew in the program that drew it"
+            yield Diagnostic("W0752", message, hints=(hint,))
+        if circular:
+            message = f"`{self.name}` refers to itself in {first_few(circular, 5)}, where nothing is drawn"
+            hint = "a `use` element may not stand in what it refers to"
+            yield Diagnostic("W0752", message, hints=(hint,))
 
 
 def _states(node: Node, name: str) -> bool:
