@@ -15,6 +15,7 @@ from collections.abc import Iterator, Sequence
 from functools import cached_property
 from io import BytesIO
 from itertools import pairwise
+from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
 from aidl_lang.common.running import checkpoint
@@ -188,22 +189,15 @@ class _Drawers:
     """The glyphs of a font by name, as a pen of fontTools looks them up, for one that is made of others."""
 
     def __init__(self, draw: Any) -> None:
-        self._draw, self._count, self._depth = draw, 0, 0
+        self._draw, self._count = draw, 0
 
-    def __getitem__(self, name: str) -> _Drawer:
+    def __getitem__(self, name: str) -> SimpleNamespace:
         self._count += 1
         if self._count > _MOST_COMPONENTS:
             raise FontError(f"it has a character made of more than {_MOST_COMPONENTS} others")
         checkpoint()
-        return _Drawer(self._draw, name, is_part=self._count > 1)
-
-
-class _Drawer:
-    def __init__(self, draw: Any, name: str, *, is_part: bool) -> None:
-        self._draw, self._name, self._is_part = draw, name, is_part
-
-    def draw(self, pen: Any) -> None:
-        self._draw(self._name, pen, self._is_part)
+        is_part = self._count > 1
+        return SimpleNamespace(draw=lambda pen: self._draw(name, pen, is_part))
 
 
 def _true_type(file: TTFont) -> Any:

@@ -53,15 +53,10 @@ def box_around(glyphs: Sequence[Glyph]) -> Box:
     return min(lefts), min(bottoms), max(rights), max(tops)
 
 
-def silhouette(glyphs: Sequence[Glyph]) -> tuple[Curve, ...]:
-    """Returns the corners of the convex hull of the ink, each alone, and the curves of which a part may lie
-    on it. In every direction the furthest point of the ink belongs to one of these.
+def silhouette(curves: Sequence[Curve]) -> tuple[Curve, ...]:
+    """Returns the corners of the convex hull of curves, each alone, and the curves of which a part may lie on
+    it. In every direction the furthest point of all belongs to one of these.
     """
-    return silhouette_of([curve for glyph in glyphs for curve in glyph.curves])
-
-
-def silhouette_of(curves: Sequence[Curve]) -> tuple[Curve, ...]:
-    """Returns the silhouette of any curves, as of letters."""
     hull = _Hull([p for curve in curves for p in _samples(curve)])
     bent = [c for c in curves if len(c) > 2 and not all(p in hull for p in c)]
     ends = {p for c in curves for p in (c[0], c[-1])}

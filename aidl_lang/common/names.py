@@ -132,15 +132,13 @@ _MOST_LETTERS = 200_000
 """Pairs of letters that one search for a name compares: enough for some hundred names of ordinary length."""
 
 
-@lru_cache(maxsize=4096)
-def fold(name: str) -> str:
-    """Returns the form that `CenterInside`, `centerInside` and `center_inside` have in common."""
-    return folded(name)
-
-
 def folded(text: str) -> str:
-    """Returns the same of a whole program, which is not remembered as names are."""
+    """Returns the form that `CenterInside`, `centerInside` and `center_inside` have in common."""
     return text.replace("_", "").casefold()
+
+
+fold = lru_cache(maxsize=4096)(folded)
+"""The same for names, which are remembered, as whole programs are not."""
 
 
 def find(name: str, table: Mapping[str, T]) -> str | None:

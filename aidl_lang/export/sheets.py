@@ -83,76 +83,37 @@ class CutList:
 
 def cut_list(job: Job) -> CutList:
     found, _ = parts_of(job.model.root, job.drawing)
-    groups = sorted(alike(found), key=lambda group: group[0].stock)
-    names = _Names(job)
-    items = tuple(_item(job, number, group, names) for number, group in enumerate(groups, 1))
-    return CutList(items, {path: item.number for item in items for path in item.paths})
-
-
-def _item(job: Job, number: int, group: Sequence[Part], names: _Names) -> Item:
-    part = group[0]
-    paths = tuple(p.body.path for p in group)
-    followed = outlines(job.model, drawn(job.drawing, [part]), job.options.followed or PLAIN)
-    return Item(
-        number,
-        first_few(names.of(paths), NAMED),
-        part,
-        paths,
-        sum(p.body.style.quantity for p in group),
-        job.options.thickness if part.body.style.thickness is None else part.body.style.thickness,
-        smallest_size(part),
-        area(part.body.region),
-        sum(length(piece) for outline in followed if outline.operation in CUTS for piece in outline.pieces),
-    )
-
-
-class _Names:
-    """Names of bodies in a list: paths from the root, without the indices of arrays all of one item."""
-
-    def __init__(self, job: Job) -> None:
-        self._root = job.model.root.path
-        self._members = Counter(_stem(self.short(body.path)) for body in job.drawing.bodies)
-
-    def short(self, path: str) -> str:
-        return path.removeprefix(f"{self._root}.")
-
-    def of(self, paths: Sequence[str]) -> list[str]:
-        names = [self.short(path) for path in paths]
+    root = f"{job.model.root.path}."
+    members = Counter(_stem(body.path.removeprefix(root)) for body in job.drawing.bodies)
+    items = []
+    for number, group in enumerate(sorted(alike(found), key=lambda group: group[0].stock), 1):
+        part, paths = group[0], tuple(p.body.path for p in group)
+        names = [path.removeprefix(root) for path in paths]
         here = Counter(map(_stem, names))
-        return list(dict.fromkeys(s if here[s := _stem(n)] == self._members[s] else n for n in names))
+        # Arrays all of one item are named without indices.
+        own = dict.fromkeys(s if here[s := _stem(n)] == members[s] else n for n in names)
+        followed = outlines(job.model, drawn(job.drawing, [part]), job.options.followed or PLAIN)
+        cuts = [piece for outline in followed if outline.operation in CUTS for piece in outline.pieces]
+        thickness = part.body.style.thickness
+        items.append(
+            Item(
+                number,
+                first_few(own, NAMED),
+                part,
+                paths,
+                sum(p.body.style.quantity for p in group),
+                job.options.thickness if thickness is None else thickness,
+                smallest_size(part),
+                area(part.body.region),
+                sum(map(length, cuts)),
+            )
+        )
+    return CutList(tuple(items), {path: item.number for item in items for path in item.paths})
 
 
 def _stem(name: str) -> str:
     head, bracket, _ = name.rpartition("[")
     return _stem(head) if bracket and name.endswith("]") else name
-
-
-@record()
-class Sheet:
-    """What is on a sheet: how many pieces of which number, their share of it, the length of cuts, mm."""
-
-    number: int
-    material: str
-    thickness: float | None
-    pieces: Counter[int]
-    used: float
-    cut: float
-
-
-def sheets(found: CutList, jobs: Sequence[Job]) -> Iterator[Sheet]:
-    by_number = {item.number: item for item in found.items}
-    for number, job in enumerate(jobs, 1):
-        pieces = Counter(found.numbers[body.path] for body in job.drawing.bodies)
-        items = [(by_number[n], count) for n, count in pieces.items()]
-        first, (left, bottom, right, top) = items[0][0], job.drawing.box
-        yield Sheet(
-            number,
-            first.material,
-            first.thickness,
-            pieces,
-            sum(item.area * count for item, count in items) / ((right - left) * (top - bottom)),
-            sum(item.cut * count for item, count in items),
-        )
 
 
 # --- Jobs for cutters: outlines widened by the cut, parts laid out on sheets, one job for each sheet.
@@ -314,7 +275,7 @@ def to_csv(jobs: Sequence[Job]) -> Exported:
         )
     rows = [_PARTS, *(_line(item, _DECIMALS) for item in found.items)]
     if jobs[0].options.sheet is not None:
-        rows += [(), _SHEETS, *(_sheet_line(sheet, _DECIMALS) for sheet in sheets(found, jobs))]
+        rows += [(), _SHEETS, *_sheets(found, jobs, _DECIMALS)]
     return Exported(csv_text(rows, end="\r\n").encode("utf-8-sig"))
 
 
@@ -332,7 +293,7 @@ def pages(jobs: Sequence[Job]) -> list[Picture]:
             "sheets",
             "Sheets",
             ("Sheet", "Material", "Thick", "Pieces", "Numbers", "Used %", "Cut"),
-            [_sheet_line(sheet, _SHOWN) for sheet in sheets(found, jobs)],
+            list(_sheets(found, jobs, _SHOWN)),
             frozenset({0, 2, 3, 5, 6}),
         ),
     ]
@@ -344,16 +305,23 @@ def _line(item: Item, decimals: int) -> tuple[str, ...]:
     return (str(item.number), item.name, str(item.quantity), item.material, *numbers)
 
 
-def _sheet_line(sheet: Sheet, decimals: int) -> tuple[str, ...]:
-    return (
-        str(sheet.number),
-        sheet.material,
-        _number(sheet.thickness, decimals),
-        str(sheet.pieces.total()),
-        " ".join(map(str, sorted(sheet.pieces))),
-        _number(100 * sheet.used, 1),
-        _number(sheet.cut, decimals),
-    )
+def _sheets(found: CutList, jobs: Sequence[Job], decimals: int) -> Iterator[tuple[str, ...]]:
+    """Yields for each sheet how many pieces of which number are on it, their share of it, and the cuts."""
+    by_number = {item.number: item for item in found.items}
+    for number, job in enumerate(jobs, 1):
+        pieces = Counter(found.numbers[body.path] for body in job.drawing.bodies)
+        items = [(by_number[n], count) for n, count in pieces.items()]
+        first, (left, bottom, right, top) = items[0][0], job.drawing.box
+        used = sum(item.area * count for item, count in items) / ((right - left) * (top - bottom))
+        yield (
+            str(number),
+            first.material,
+            _number(first.thickness, decimals),
+            str(pieces.total()),
+            " ".join(map(str, sorted(pieces))),
+            _number(100 * used, 1),
+            _number(sum(item.cut * count for item, count in items), decimals),
+        )
 
 
 def _number(value: float | None, decimals: int) -> str:

@@ -327,9 +327,9 @@ class Trace:
     @cached_property
     def silhouette(self) -> tuple[Curve, ...]:
         """The corners and curves of which some point is the furthest in every direction."""
-        from aidl_lang.common.lettering import silhouette_of
+        from aidl_lang.common.lettering import silhouette
 
-        return silhouette_of([curve for stroke in self.strokes for curve in as_curves(stroke)])
+        return silhouette([curve for stroke in self.strokes for curve in as_curves(stroke)])
 
 
 @record(eq=False)

@@ -109,8 +109,7 @@ class _Walk:
         """Returns width and height of the page in pixels, and the map of its coordinates to these."""
         box = self._view_box(self.root)
         full = (box[2], box[3]) if box else _PAGE
-        width = self._page_length("width", full[0], full[0])
-        height = self._page_length("height", full[1], full[1])
+        width, height = map(self._page_length, ("width", "height"), full)
         given = [name for name in ("width", "height") if _states(self.root, name)]
         if box and len(given) == 1:  # the other follows
             if given == ["width"]:
@@ -119,11 +118,11 @@ class _Walk:
                 width = height * box[2] / box[3]
         return width, height, self._fitted(self.root, box, width, height)
 
-    def _page_length(self, name: str, default: float, whole: float) -> float:
-        if not _states(self.root, name):
-            return default
-        value = self._length(self.root, self.root.attributes[name], whole)
-        return value if value > 0.0 else default
+    def _page_length(self, name: str, full: float) -> float:
+        stated = (
+            self._length(self.root, self.root.attributes[name], full) if _states(self.root, name) else 0.0
+        )
+        return stated if stated > 0.0 else full
 
     # --- Elements ------------------------------------------------------------------------------
 

@@ -89,11 +89,6 @@ class StructurePair:
     def items(self) -> list[GeometryPair | StructurePair]:
         return [*self.geometry, *self.structures]
 
-    def leaves(self) -> Iterator[GeometryPair]:
-        """Yields all geometry in it that is in both versions."""
-        for pair in self.walk():
-            yield from pair.geometry
-
     def follows(self, move: Move) -> bool:
         """True if most of its members moved by `move`."""
         if self.pose.fits(move):
@@ -470,7 +465,7 @@ class _Walk:
     def _candidates(self, pair: StructurePair) -> list[Move]:
         """The most frequent motions of single things; turns get a place, for circles show only shifts."""
         votes: dict[tuple[int, ...], list[Move]] = {}
-        for move in (leaf.pose.shift() for leaf in pair.leaves()):
+        for move in (leaf.pose.shift() for inner in pair.walk() for leaf in inner.geometry):
             if move is not None and np.isfinite([move.dx, move.dy, move.turn]).all():
                 steps = (move.dx / self.tolerance, move.dy / self.tolerance, 1e5 * move.turn)
                 votes.setdefault((*(round(s / 100) for s in steps), move.mirrored), []).append(move)
