@@ -36,20 +36,11 @@ _MOST_COMPONENTS = 200
 _MOST_STEPS = 200_000
 """Bytes of the programs that draw one character, each counted as often as it is called."""
 
-_BROKEN = (
-    ArithmeticError,
-    AssertionError,
-    AttributeError,
-    EOFError,
-    LookupError,
-    NameError,
-    NotImplementedError,
-    RecursionError,
-    TypeError,
-    ValueError,
-    struct.error,
+FAULTS = (
+    *(ArithmeticError, AssertionError, AttributeError, EOFError, LookupError, NameError, NotImplementedError),
+    *(OSError, RecursionError, StopIteration, TypeError, ValueError, struct.error),
 )
-"""What fontTools raises for files that are not as they should be, beside its own error."""
+"""What libraries raise for files that are not as they should be, beside their own errors."""
 
 # What fontTools would say of a file is told by diagnostics; it is not printed beside them.
 logging.getLogger("fontTools").addHandler(logging.NullHandler())
@@ -76,7 +67,7 @@ class FontFile:
             self._advances: dict[str, tuple[int, int]] = self._file["hmtx"].metrics
             if not self.capital_height > 0.0:
                 raise FontError("it does not say how high its capitals are, and has no H")
-        except (*_BROKEN, TTLibError) as reason:
+        except (*FAULTS, TTLibError) as reason:
             raise FontError("its contents are broken") from reason
 
     def __contains__(self, character: str) -> bool:
@@ -89,7 +80,7 @@ class FontFile:
         try:
             name = self._file.getGlyphName(self._characters[ord(character)])
             return self._curves_of(name), float(self._advances[name][0])
-        except (*_BROKEN, TTLibError) as reason:
+        except (*FAULTS, TTLibError) as reason:
             raise FontError(f"its outline of `{character}` is broken") from reason
 
     @cached_property

@@ -122,13 +122,9 @@ def outlines(model: SolvedModel, drawing: Drawing, profile: Profile = PLAIN) -> 
 
 def unfilled(drawing: Drawing, profile: Profile) -> list[str]:
     """Returns the paths of drawings that are to be engraved as areas and have lines that enclose none."""
-    return list(
-        dict.fromkeys(
-            outline.path
-            for outline in _lines(drawing, profile)
-            if outline.operation == ENGRAVE and profile.operation(outline.style.layer, ENGRAVE) == FILL
-        )
-    )
+    lines = (line for line in _lines(drawing, profile) if line.operation == ENGRAVE)
+    unlike = (line.path for line in lines if profile.operation(line.style.layer, ENGRAVE) == FILL)
+    return list(dict.fromkeys(unlike))
 
 
 def _lines(drawing: Drawing, profile: Profile) -> Iterator[Outline]:

@@ -178,14 +178,9 @@ def is_pattern(name: str) -> bool:
     words = _WORD.findall(name)
     for word in words:
         if word not in WORDS:
-            raise ExportError(
-                "E0926",
-                f"`{{{word}}}` in `{name}` stands for nothing",
-                *(
-                    did_you_mean(_braced(nearest(word, WORDS)))
-                    or [f"there are {listed(ticked(_braced(WORDS)))}"]
-                ),
-            )
+            near = did_you_mean(_braced(nearest(word, WORDS)))
+            hints = near or [f"there are {listed(ticked(_braced(WORDS)))}"]
+            raise ExportError("E0926", f"`{{{word}}}` in `{name}` stands for nothing", *hints)
     if words and not set(words) & set(_TELLING):
         message = f"`{name}` is one name for several parts"
         raise ExportError("E0926", message, "name them apart: with `{part}`, or with `{number}`")

@@ -14,6 +14,7 @@ from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.prose import rounded
 from aidl_lang.common.render.terminal import to_dict as diagnostic_dict
 from aidl_lang.common.running import checkpoint
+from aidl_lang.common.source import Span
 from aidl_lang.geometry.boolean import Contact
 from aidl_lang.geometry.curves import KINDS
 from aidl_lang.geometry.drawing import Drawing
@@ -75,14 +76,8 @@ def to_dict(
         "status": model.status,
         "root": _structure(model.root, model.mobility()),
         "constraints": [
-            {
-                "path": c.path,
-                "text": c.text,
-                "line": c.span.line,
-                "column": c.span.column,
-                "residual": c.residual,
-                "satisfied": c.satisfied,
-            }
+            {"path": c.path, "text": c.text, **_place(c.span)}
+            | {"residual": c.residual, "satisfied": c.satisfied}
             | ({"soft": True} if c.soft else {})
             for c in model.constraints
         ],
@@ -107,13 +102,16 @@ def to_dict(
     }
     if model.readings:
         document["readings"] = [
-            {"text": r.span.one_line, "line": r.span.line, "column": r.span.column, "reading": r.text}
-            for r in model.readings
+            {"text": r.span.one_line, **_place(r.span), "reading": r.text} for r in model.readings
         ]
     if timings is not None:
         document["timings"] = dict(timings)
     result: Json = rounded(document)
     return result
+
+
+def _place(span: Span) -> Json:
+    return {"line": span.line, "column": span.column}
 
 
 def _structure(s: SolvedStructure, mobility: Mobility) -> Json:

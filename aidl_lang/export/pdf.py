@@ -135,12 +135,9 @@ def to_pdf(pages: Sequence[Picture], title: str) -> bytes:
 
     for page in pages:
         if max(page.width, page.height) > LONGEST:
-            raise ExportError(
-                "E0921",
-                f"the picture measures {size_text((page.width, page.height))}, and a page of a PDF ends at "
-                f"{LONGEST:.0f} mm",
-                "print it over several pages: `--tile a0`",
-            )
+            size = size_text((page.width, page.height))
+            message = f"the picture measures {size}, and a page of a PDF ends at {LONGEST:.0f} mm"
+            raise ExportError("E0921", message, "print it over several pages: `--tile a0`")
     pdfmetrics.registerFont(TTFont(FAMILY, font_file()))
     data = io.BytesIO()
     # invariant: no dates and no random numbers

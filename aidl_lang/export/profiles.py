@@ -90,10 +90,6 @@ class Profile:
         return self.look(outline.style.layer, outline.operation).color
 
 
-def _looks(width: float, *looks: tuple[str, str]) -> dict[str, Look]:
-    return {op: Look(color, width, layer) for op, (color, layer) in zip(OPERATIONS, looks, strict=True)}
-
-
 _PLAIN_COLORS = ("#000000", "#0000ff", "#008000", "#ff0000", "#ff0000")
 PLAIN = Profile(
     "plain",
@@ -103,43 +99,36 @@ PLAIN = Profile(
 )
 """Red to cut and blue to engrave, on the layers of the program; nothing but what is asked for is filled."""
 
+
+def _of_machine(name: str, width: float, table: str) -> Profile:
+    """Returns a profile by a colour and a layer for each operation, and the width of all lines."""
+    looks = (Look(color, width, layer) for color, layer in (row.split() for row in table.split(", ")))
+    return Profile(name, dict(zip(OPERATIONS, looks, strict=True)))
+
+
 PROFILES = {
-    "plain": PLAIN,
-    # Colours of the program's palette, from the front of it to the back as they are carried out.
-    "lightburn": Profile(
-        "lightburn",
-        _looks(
+    made.name: made
+    for made in (
+        PLAIN,
+        # Colours of the program's palette, from the front of it to the back as they are carried out.
+        _of_machine(
+            "lightburn",
             0.1,
-            ("#000000", "C00-fill"),
-            ("#0000ff", "C01-engrave"),
-            ("#00e000", "C03-score"),
-            ("#ff8000", "C05-inner"),
-            ("#a00000", "C10-outer"),
+            "#000000 C00-fill, #0000ff C01-engrave, #00e000 C03-score, #ff8000 C05-inner, #a00000 C10-outer",
         ),
-    ),
-    # Steps are listed by colour: these rise.
-    "glowforge": Profile(
-        "glowforge",
-        _looks(
+        # Steps are listed by colour: these rise.
+        _of_machine(
+            "glowforge",
             0.1,
-            ("#000000", "fill"),
-            ("#0000ff", "engrave"),
-            ("#00ff00", "score"),
-            ("#ff0000", "inner"),
-            ("#ff00ff", "outer"),
+            "#000000 fill, #0000ff engrave, #00ff00 score, #ff0000 inner, #ff00ff outer",
         ),
-    ),
-    "ponoko": Profile(
-        "ponoko",
-        _looks(
+        _of_machine(
+            "ponoko",
             0.01,
-            ("#000000", "area-engraving"),
-            ("#ff0000", "line-engraving"),
-            ("#ff0000", "line-engraving"),
-            ("#0000ff", "cutting"),
-            ("#0000ff", "cutting"),
+            "#000000 area-engraving, #ff0000 line-engraving, #ff0000 line-engraving, "
+            "#0000ff cutting, #0000ff cutting",
         ),
-    ),
+    )
 }
 
 
@@ -236,11 +225,8 @@ class _Reader:
 
     def _order(self, said: Any) -> tuple[str, ...]:
         if not isinstance(said, list) or sorted(map(str, said)) != sorted(OPERATIONS):
-            raise _wrong(
-                self._name,
-                f"`order` names each operation once, not {_shown(said)}",
-                f"the usual one is {listed(ticked(OPERATIONS))}",
-            )
+            hint = f"the usual one is {listed(ticked(OPERATIONS))}"
+            raise _wrong(self._name, f"`order` names each operation once, not {_shown(said)}", hint)
         return tuple(map(str, said))
 
     def _color(self, said: Any, where: str) -> str:

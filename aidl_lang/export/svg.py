@@ -204,11 +204,10 @@ def _gradient(gradient: Gradient, name: str, svg: Any) -> Any:
     (x0, y0), (x1, y1) = gradient.start, gradient.end
     start, end = (fixed(x0), fixed(-y0)), (fixed(x1), fixed(-y1))
     looks = {"id": name, "gradientUnits": "userSpaceOnUse"}
-    made = (
-        svg.linearGradient(start, end, **looks)
-        if gradient.radius is None
-        else svg.radialGradient(start, fixed(gradient.radius), **looks)
-    )
+    if gradient.radius is None:
+        made = svg.linearGradient(start, end, **looks)
+    else:
+        made = svg.radialGradient(start, fixed(gradient.radius), **looks)
     if gradient.height != 1:
         made["gradientTransform"] = (
             f"matrix(1 0 0 {fixed(gradient.height)} 0 {fixed(-y0 * (1 - gradient.height))})"

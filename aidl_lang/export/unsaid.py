@@ -48,10 +48,8 @@ def _unsaid(job: Job, suffix: str) -> Iterator[Diagnostic]:
     file = suffix.replace(".stp", ".step")
     lost = [name for name, files in _WITHOUT.items() if file in files.split()]
     if stated := list(_stated(job.model.root, lost)):
-        names, times = (
-            [n for n in lost if any(n == name for _, name in stated)],
-            len({id(h) for h, _ in stated}),
-        )
+        names = [n for n in lost if any(n == name for _, name in stated)]
+        times = len({id(holder) for holder, _ in stated})
         counts = "counts" if len(names) == 1 else "count"
         message = f"{listed(ticked(names, '@'))} {counts} for nothing in this file: {_WHY[file]}"
         label = "stated here" if times == 1 else f"stated here first, {times} times in all"

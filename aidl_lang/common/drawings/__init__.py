@@ -56,10 +56,8 @@ class Bow:
     def at(self, t: float) -> Vec:
         """Returns the point at a parameter."""
         c, s = math.cos(t), math.sin(t)
-        return (
-            self.center[0] + self.u[0] * c + self.v[0] * s,
-            self.center[1] + self.u[1] * c + self.v[1] * s,
-        )
+        x = self.center[0] + self.u[0] * c + self.v[0] * s
+        return x, self.center[1] + self.u[1] * c + self.v[1] * s
 
     def heading(self, t: float) -> Vec:
         """Returns the derivative at a parameter."""
@@ -197,10 +195,8 @@ def as_curves(stroke: Stroke) -> tuple[Curve, ...]:
         first, last = stroke.first + k * step, stroke.first + (k + 1) * step
         start, end = stroke.at(first), stroke.at(last)
         (dx, dy), (ex, ey) = stroke.heading(first), stroke.heading(last)
-        one, two = (
-            (start[0] + dx * handle, start[1] + dy * handle),
-            (end[0] - ex * handle, end[1] - ey * handle),
-        )
+        one = start[0] + dx * handle, start[1] + dy * handle
+        two = end[0] - ex * handle, end[1] - ey * handle
         found.append((start, one, two, end))
     return tuple(found)
 

@@ -24,7 +24,7 @@ from aidl_lang.common.drawings import (
     flat,
     mapped,
 )
-from aidl_lang.common.font_files import Vec
+from aidl_lang.common.font_files import FAULTS, Vec
 from aidl_lang.common.prose import counted
 from aidl_lang.common.running import checkpoint
 
@@ -38,41 +38,22 @@ ENGRAVED = "AIDL_ENGRAVED"
 """The application under which AIDL says of an entity that it is engraved, and how."""
 
 _NAMES = {
-    "TEXT": "text",
-    "MTEXT": "text",
-    "ATTRIB": "text",
-    "ATTDEF": "text",
-    "DIMENSION": "dimension",
-    "ARC_DIMENSION": "dimension",
-    "LEADER": "leader",
-    "MULTILEADER": "leader",
-    "HATCH": "hatch",
-    "MPOLYGON": "hatch",
-    "POINT": "point",
-    "IMAGE": "image",
-    "VIEWPORT": "viewport",
-    "SOLID": "filled face",
-    "TRACE": "filled face",
-    "3DFACE": "filled face",
-    "MESH": "mesh",
-    "RAY": "endless line",
-    "XLINE": "endless line",
+    kind: name
+    for name, kinds in {
+        "text": "TEXT MTEXT ATTRIB ATTDEF",
+        "dimension": "DIMENSION ARC_DIMENSION",
+        "leader": "LEADER MULTILEADER",
+        "hatch": "HATCH MPOLYGON",
+        "point": "POINT",
+        "image": "IMAGE",
+        "viewport": "VIEWPORT",
+        "filled face": "SOLID TRACE 3DFACE",
+        "mesh": "MESH",
+        "endless line": "RAY XLINE",
+    }.items()
+    for kind in kinds.split()
 }
 """How entities that are no outlines are called."""
-
-_FAULTS = (
-    ArithmeticError,
-    AssertionError,
-    AttributeError,
-    EOFError,
-    LookupError,
-    OSError,
-    RecursionError,
-    StopIteration,
-    TypeError,
-    ValueError,
-)
-"""What ezdxf raises for files that are not as they should be, beside its own errors."""
 
 logging.getLogger("ezdxf").addHandler(logging.NullHandler())
 
@@ -83,7 +64,7 @@ def read(data: bytes, name: str) -> tuple[Collector, list[Diagnostic]]:
     walk = _Walk(document, name)
     try:
         walk.entities(document.modelspace(), (), "")
-    except _FAULTS as reason:
+    except FAULTS as reason:
         raise _broken(name) from reason
     return walk.done()
 
@@ -106,7 +87,7 @@ def _loaded(data: bytes, name: str) -> Drawing:
         hint = "export fewer of its layers, or simplify it"
         message = f"`{name}` is refused: it has more than {MOST_ENTITIES:,} entities"
         raise DrawingError("E0363", message, hint)
-    faults = (*_FAULTS, ezdxf.DXFError)  # type: ignore[attr-defined]
+    faults = (*FAULTS, ezdxf.DXFError)  # type: ignore[attr-defined]
     try:
         encoding = dxf_stream_info(io.StringIO(data.decode("utf-8", "ignore"))).encoding
         text = data.decode(encoding, "surrogateescape").replace("\r\n", "\n")

@@ -144,14 +144,8 @@ class _Walk:
         if any(style.get(way, "none") != "none" for way in ("clip-path", "mask")):
             self.found.leave_out("clipped or masked shape")
         matrix = self._transform(node, style, place.matrix)
-        place = _Place(
-            matrix,
-            place.page,
-            style,
-            (*place.names, *_names(node)),
-            (*place.around, node),
-            *_engraved(node, place),
-        )
+        names, around = (*place.names, *_names(node)), (*place.around, node)
+        place = _Place(matrix, place.page, style, names, around, *_engraved(node, place))
         if node.tag == "use":
             self._use(node, place)
         elif node.tag == "svg":
@@ -186,12 +180,8 @@ class _Walk:
         if place.operation is not None:
             color = place.style.get("fill" if is_filled else "stroke") if place.operation == "" else None
             engraving = Engraving(place.layer, color, is_filled)
-        self.found.add(
-            place.names,
-            (mapped(s, place.matrix) for s in strokes),
-            is_winding=is_winding,
-            engraving=engraving,
-        )
+        placed = (mapped(stroke, place.matrix) for stroke in strokes)
+        self.found.add(place.names, placed, is_winding=is_winding, engraving=engraving)
 
     def _use(self, node: Node, place: _Place) -> None:
         target = self.by_id.get(node.attributes.get("href", "").strip().removeprefix("#"))

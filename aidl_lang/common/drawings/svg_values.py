@@ -118,19 +118,8 @@ def _plain(attributes: dict[str, str]) -> dict[str, str]:
 # --- The values of attributes in SVG: lengths, numbers, transforms, styles and the data of paths.
 
 MM_PER_PIXEL = 25.4 / 96
-_PIXELS = {
-    "": 1.0,
-    "px": 1.0,
-    "in": 96.0,
-    "mm": 96 / 25.4,
-    "cm": 960 / 25.4,
-    "q": 24 / 25.4,
-    "pt": 96 / 72,
-    "pc": 16.0,
-    "em": 16.0,
-    "rem": 16.0,
-    "ex": 8.0,
-}
+_PIXELS = {"px": 1.0, "in": 96.0, "mm": 96 / 25.4, "cm": 960 / 25.4, "q": 24 / 25.4, "pt": 96 / 72, "ex": 8.0}
+_PIXELS |= dict.fromkeys(("pc", "em", "rem"), 16.0)
 """Pixels in each unit of length; em and ex are those of the text that browsers begin with."""
 
 _NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
@@ -147,7 +136,7 @@ def pixels(text: str, whole: float) -> float:
     found = _LENGTH.fullmatch(text)
     if found is None:
         raise ValueMistake(text)
-    number, unit = float(found[1]), found[2].lower()
+    number, unit = float(found[1]), found[2].lower() or "px"
     if unit == "%":
         return number * whole / 100
     if unit not in _PIXELS:

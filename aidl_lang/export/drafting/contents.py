@@ -40,14 +40,10 @@ def said_of(model: SolvedModel, drawing: Drawing) -> tuple[Labels, Notes, list[s
     """Returns the circles of which something is said, with what stands in place of their diameter; notes on
     anything else, with its outline; and those that are too long for a place beside it.
     """
-    lines: list[str] = []
+    lines: dict[str, int] = {}
 
     def shortened(words: str) -> str:
-        if len(words) <= _BESIDE:
-            return words
-        line = next((k for k, known in enumerate(lines, 1) if known == words), len(lines) + 1)
-        lines[line - 1 :] = [words] if line > len(lines) else lines[line - 1 :]
-        return f"note {line}"
+        return words if len(words) <= _BESIDE else f"note {lines.setdefault(words, len(lines) + 1)}"
 
     bodies = {model.root.path, *(body.path for body in drawing.bodies)}
     drawn = {_middle(piece) for body in drawing.bodies for piece in body.region.pieces}
@@ -71,7 +67,7 @@ def said_of(model: SolvedModel, drawing: Drawing) -> tuple[Labels, Notes, list[s
             elif drawn.intersection(map(_middle, curves)) and (rest or own):
                 notes.append((shortened(", ".join([*rest, *own])), curves))
                 rest = []
-    long = [part for n, words in enumerate(lines, 1) for part in wrap(f"Note {n}: {words}", _LINE)]
+    long = [part for words, n in lines.items() for part in wrap(f"Note {n}: {words}", _LINE)]
     return labels, tuple(notes), long
 
 
