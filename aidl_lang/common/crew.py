@@ -257,7 +257,6 @@ class Cluster:
             local.set_exception(RuntimeError(": ".join(map(str, found))))
 
     def _error(self, remote: Any, error: Exception) -> Exception:
-        """Returns the error of a call that brought no result from its worker."""
         from distributed.client import FutureCancelledError
         from distributed.scheduler import KilledWorker
 
@@ -324,7 +323,6 @@ def carried(
 
 
 def _pool(preload: str, threads: int) -> Guarded:
-    """Returns the guarded processes of this worker, one for each of its threads."""
     with _starting:
         if preload not in _pools:
             _pools[preload] = Guarded(threads, preload)

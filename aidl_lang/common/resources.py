@@ -64,7 +64,6 @@ def _kept(name: str, inputs: Iterable[Path]) -> Path:
 
 
 def _digest(files: Iterable[tuple[str, Path]]) -> str:
-    """Returns a digest of the names and the contents of files."""
     digest = hashlib.sha256()
     for name, path in files:
         data = path.read_bytes()

@@ -14,8 +14,7 @@ from numpy.typing import NDArray
 from aidl_lang.common.prose import fixed
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
-from aidl_lang.export import themes
-from aidl_lang.export.marks import Area, Block, Curves, Ink, Mark, Text, arrowhead
+from aidl_lang.export.marks import DIMENSION, Area, Block, Curves, Ink, Mark, Text, arrowhead
 from aidl_lang.geometry.curves import Arc, Bounds, Circle, Line, Piece, Vec, ends, point, points, union_bounds
 from aidl_lang.geometry.dimensions.features import dot
 from aidl_lang.geometry.drawing import Drawing
@@ -74,10 +73,10 @@ class Pen:
         return Block(tip, math.degrees(math.atan2(v, u)), (-HEAD * self.mm, -half, 0.0, half))
 
     def text(self, words: str, middle: Vec, angle: float = 0.0) -> Text:
-        return Text(middle, words, self.font, themes.DIMENSION, "middle", angle=angle)
+        return Text(middle, words, self.font, DIMENSION, "middle", angle=angle)
 
     def marks(self, placed: PlacedDimension) -> Iterator[Mark]:
-        ink = Ink(themes.DIMENSION, LINE * self.mm)
+        ink = Ink(DIMENSION, LINE * self.mm)
         for role, segments in (("extension", placed.extensions), ("dimension", placed.lines)):
             if segments:
                 yield Curves(tuple(Line(*s) for s in segments), ink, role)
@@ -90,7 +89,7 @@ class Pen:
             yield Curves((placed.arc,), ink, "dimension")
         for head in placed.heads:
             face = arrowhead(*head, HEAD * self.mm, HEAD_WIDTH * self.mm)
-            yield Area(face, themes.DIMENSION, None, "arrow")
+            yield Area(face, DIMENSION, None, "arrow")
         yield placed.text
 
     def box_of(self, placed: PlacedDimension) -> Bounds:

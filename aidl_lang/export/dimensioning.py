@@ -12,9 +12,8 @@ from dataclasses import field, replace
 
 from aidl_lang.common.prose import counted
 from aidl_lang.common.records import record
-from aidl_lang.export import themes
 from aidl_lang.export.dimension_marks import HEIGHT, Pen, PlacedDimension, Sheet, broken, words_of
-from aidl_lang.export.marks import Group, Text
+from aidl_lang.export.marks import DIMENSION, Group, Text
 from aidl_lang.geometry.curves import Arc, Bounds, Circle, Vec, bounds, larger_side, point, union_bounds
 from aidl_lang.geometry.dimensions import dimensions
 from aidl_lang.geometry.dimensions.features import X_AXIS, Y_AXIS, is_clipped
@@ -141,7 +140,7 @@ class _Layout:
         if self.remarks and (left := len(wanted) - len(placed)):
             (x, y, *_), size = union_bounds(boxes), 0.8 * self.pen.font
             words = f"{counted(left, 'more dimension')} not shown"
-            note = Text((x, y - 1.6 * size), words, size, themes.DIMENSION)
+            note = Text((x, y - 1.6 * size), words, size, DIMENSION)
             groups.append(Group("dimensions-left-out", (note,), {"class": "dimension"}))
             boxes.append(note.box)
         return union_bounds(boxes), tuple(groups)

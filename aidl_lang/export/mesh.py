@@ -17,7 +17,7 @@ from aidl_lang.common.prose import named
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
 from aidl_lang.export.job import Exported, ExportError, Job
-from aidl_lang.export.themes import body_fill
+from aidl_lang.export.marks import body_fill
 from aidl_lang.geometry.curves import LARGEST
 from aidl_lang.geometry.drawing import Body, Stroke
 from aidl_lang.geometry.legibility import owner

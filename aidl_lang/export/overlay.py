@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
-from aidl_lang.export import themes
+from aidl_lang.export import marks
 from aidl_lang.export.job import Job
 from aidl_lang.export.marks import CHARACTER, Dot, Frame, Mark, Text, widened
 from aidl_lang.geometry.curves import Bounds, Vec, are_near, bounds, union_bounds
@@ -46,7 +46,7 @@ def labels(job: Job) -> Iterator[Text]:
         label = " ".join(words)
         middle, size = _room(body.region, _lines_on(body, job.drawing), CHARACTER * len(label))
         at = middle[0], middle[1] - _BASELINE * size
-        yield Text(at, label, size, themes.NAME, "middle", halo=False)
+        yield Text(at, label, size, marks.NAME, "middle", halo=False)
 
 
 def _lines_on(body: Body, drawing: Drawing) -> list[NDArray[np.float64]]:
@@ -170,11 +170,10 @@ def explain(
     corner = (box[0], box[1] - 3 * at.font) if wide else (box[2] + 2 * at.font, box[3] - 0.7 * at.font)
     for name, lists in (("constraints", _constraints), ("dof", _degrees)):
         if name in show:
-            marks = lists(at, corner)
-            layers[name] = marks
-            listed = [m.box[2] for m in marks if isinstance(m, Text) and not m.halo]
+            layers[name] = lists(at, corner)
+            listed = [m.box[2] for m in layers[name] if isinstance(m, Text) and not m.halo]
             corner = (max(listed, default=corner[0]) + 2 * at.font, corner[1])
-    texts = [m.box for marks in layers.values() for m in marks if isinstance(m, Text | Frame)]
+    texts = [m.box for layer in layers.values() for m in layer if isinstance(m, Text | Frame)]
     return union_bounds([box, *texts]), layers
 
 
@@ -202,26 +201,25 @@ def _names(at: Explainer) -> Iterator[Mark]:
 
 def _name(at: Explainer, structure: SolvedStructure, box: Bounds, size: float) -> Text:
     """Places a name in the upper left corner of a structure without parts if it fits, else around it."""
-    inside = Text((box[0] + 0.35 * size, box[3] - 1.1 * size), structure.name, size, themes.NAME)
+    inside = Text((box[0] + 0.35 * size, box[3] - 1.1 * size), structure.name, size, marks.NAME)
     fits = inside.box[2] < box[2] and box[3] - box[1] > 2.5 * size
     if fits and not structure.structures and not at.taken.overlap(inside.box):
         return at.first_free([inside])
-    return at.label(structure.name, box, themes.NAME, size, bold=structure is at.model.root)
+    return at.label(structure.name, box, marks.NAME, size, bold=structure is at.model.root)
 
 
 def _boxes(at: Explainer) -> Iterator[Mark]:
-    return (Frame(box, themes.BOX, at.hair, 4 * at.hair) for _, box in at.boxes())
+    return (Frame(box, marks.BOX, at.hair, 4 * at.hair) for _, box in at.boxes())
 
 
 def _plans(at: Explainer) -> Iterator[Mark]:
-    """Yields empty structures as dashed boxes with their names."""
     for plan in at.drawing.plans:
-        yield Frame(plan.box, themes.PLAN, 1.6 * at.hair, 8 * at.hair)
+        yield Frame(plan.box, marks.PLAN, 1.6 * at.hair, 8 * at.hair)
         left, bottom, right, top = plan.box
         fitting = (right - left) / max(1, 0.7 * len(plan.name))
         size = max(0.5 * at.font, min(1.2 * at.font, fitting, 0.6 * (top - bottom)))
         label = Text(
-            ((left + right) / 2, (top + bottom) / 2 - 0.3 * size), plan.name, size, themes.PLAN, "middle"
+            ((left + right) / 2, (top + bottom) / 2 - 0.3 * size), plan.name, size, marks.PLAN, "middle"
         )
         at.taken.add(label.box)
         yield label
@@ -242,13 +240,13 @@ def _points(at: Explainer) -> Iterator[Mark]:
     radius = 0.2 * at.font
     for p in places.values():
         at.taken.add((p[0] - radius, p[1] - radius, p[0] + radius, p[1] + radius))
-        yield Dot(p, radius, themes.POINT)
+        yield Dot(p, radius, marks.POINT)
     if len(places) <= MANY:
         size = 0.6 * at.font
         for key, p in places.items():
             spot = (p[0] - radius, p[1] - 1.5 * radius, p[0] + radius, p[1] + 1.5 * radius)
             text = " = ".join(names[key][:2]) + (" …" if len(names[key]) > 2 else "")
-            yield at.label(text, spot, themes.POINT, size)
+            yield at.label(text, spot, marks.POINT, size)
 
 
 def _named_points(geometry: SolvedGeometry, name: str) -> Iterator[tuple[str, Vec]]:
@@ -272,24 +270,24 @@ def _is_point(value: object) -> TypeGuard[Vec]:
 
 def _constraints(at: Explainer, corner: Vec) -> list[Mark]:
     """Returns numbers near what the constraints mention, and their texts in a list; violated ones in red."""
-    marks: list[Mark] = []
+    found: list[Mark] = []
     size, (left, top) = 0.7 * at.font, corner
     things = _things(at.model.root)
     for number, constraint in enumerate(at.model.constraints, 1):
         checkpoint()
-        color = themes.GOOD if constraint.satisfied else themes.BAD
+        color = marks.GOOD if constraint.satisfied else marks.BAD
         spot = _spot(things, constraint)
         if spot is not None:
-            marks.append(at.label(str(number), spot, color, 0.75 * at.font, bold=True))
+            found.append(at.label(str(number), spot, color, 0.75 * at.font, bold=True))
         text = " ".join(constraint.text.split())
         soft = "prefer " if constraint.soft and not text.startswith("prefer") else ""
         holds = "" if constraint.satisfied else f"  ✗ off by {constraint.residual:.3g}"
         words = f"{number}  {soft}{text}{holds}"
         lines = wrap(words, LINE_LENGTH, break_long_words=False, break_on_hyphens=False)
         for k, line in enumerate(lines):
-            marks.append(Text((left + (1.6 * size if k else 0), top), line, size, color, halo=False))
+            found.append(Text((left + (1.6 * size if k else 0), top), line, size, color, halo=False))
             top -= 1.35 * size
-    return marks
+    return found
 
 
 def _spot(things: Mapping[str, _Thing], constraint: ConstraintReport) -> Bounds | None:
@@ -325,14 +323,14 @@ def _box_of(things: Mapping[str, _Thing], path: str) -> Bounds | None:
 
 def _degrees(at: Explainer, corner: Vec) -> list[Mark]:
     """Returns the degrees of freedom at each structure that has any, and the free parameters in a list."""
-    marks: list[Mark] = []
+    found: list[Mark] = []
     size, (left, top) = 0.7 * at.font, corner
     structures, mobility = list(at.model.root.walk()), at.model.mobility()
     free = _free_by_structure(structures, mobility.free)
     for structure, box in at.boxes():
         degrees, _ = mobility.of(structure)
         if degrees or structure is at.model.root:
-            marks.append(at.label(f"{structure.name}: {degrees} dof", box, themes.FREE, size))
+            found.append(at.label(f"{structure.name}: {degrees} dof", box, marks.FREE, size))
     count = mobility.degrees
     lines = [(0, "degrees of freedom not counted" if count is None else f"{count} degrees of freedom")]
     for structure in structures:
@@ -340,9 +338,9 @@ def _degrees(at: Explainer, corner: Vec) -> list[Mark]:
             lines.append((0, f"{structure.path}: {mobility.of(structure)[0]}"))
             lines += [(1, name) for name in names]
     for indent, line in lines:
-        marks.append(Text((left + indent * size, top), line, size, themes.FREE, halo=False))
+        found.append(Text((left + indent * size, top), line, size, marks.FREE, halo=False))
         top -= 1.35 * size
-    return marks
+    return found
 
 
 def _free_by_structure(structures: list[SolvedStructure], free: Iterable[str]) -> dict[str, list[str]]:

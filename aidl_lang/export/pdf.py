@@ -329,7 +329,6 @@ def _add_pieces(path: Any, pieces: Iterable[Piece]) -> None:
 
 
 def _cubics(piece: Piece) -> Iterator[tuple[Vec, Vec, Vec, Vec]]:
-    """Yields the control points of cubic Bézier curves for a piece."""
     if isinstance(piece, Bezier):
         yield piece.p0, piece.p1, piece.p2, piece.p3
         return

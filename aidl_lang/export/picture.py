@@ -13,10 +13,9 @@ from aidl_lang.common.colors import css_color, hexadecimal, rgb
 from aidl_lang.common.prose import fixed, size_text
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
-from aidl_lang.export import marks, themes
+from aidl_lang.export import marks
 from aidl_lang.export.job import ExportError, Job
 from aidl_lang.export.marks import (
-    HALO,
     LETTERS,
     Area,
     Curves,
@@ -29,10 +28,10 @@ from aidl_lang.export.marks import (
     Picture,
     Stop,
     Text,
+    themed,
     widened,
 )
 from aidl_lang.export.overlay import explain, labels
-from aidl_lang.export.themes import themed
 from aidl_lang.geometry.boolean import united, without
 from aidl_lang.geometry.curves import (
     Bounds,
@@ -152,7 +151,7 @@ def _check(page: Size, window: Size, overlap: float) -> None:
 def _page_marks(sight: Bounds, crosses: Sequence[Vec], overlap: float, label: str) -> Iterator[Mark]:
     """Yields the marks that help to join the pages: corners, crosses, a label and a scale."""
     left, bottom, right, top = sight
-    ink = Ink(themes.PLAN, HAIRLINE)
+    ink = Ink(marks.PLAN, HAIRLINE)
     ticks: list[Piece] = []
     for x, out in ((left, -1.0), (right, 1.0)):
         for y, up in ((bottom, -1.0), (top, 1.0)):
@@ -167,8 +166,8 @@ def _page_marks(sight: Bounds, crosses: Sequence[Vec], overlap: float, label: st
     start, low = left + 2 * TICK, bottom - 2.5
     ends = (Line((x, low - 1), (x, low + 1)) for x in (start, start + SCALE))
     yield Curves((Line((start, low), (start + SCALE, low)), *ends), ink, "scale")
-    yield Text((start + SCALE + 1, low - 1), f"{fixed(SCALE)} mm", FONT, themes.PLAN, halo=False)
-    yield Text((start, top + 1.5), label, FONT, themes.PLAN, halo=False)
+    yield Text((start + SCALE + 1, low - 1), f"{fixed(SCALE)} mm", FONT, marks.PLAN, halo=False)
+    yield Text((start, top + 1.5), label, FONT, marks.PLAN, halo=False)
 
 
 class _Shape:
@@ -338,7 +337,7 @@ def _identity(structure: SolvedStructure, drawing: Drawing) -> dict[str, str]:
 def _marks(root: SolvedStructure, drawing: Drawing, size: float) -> Iterator[tuple[str, Mark]]:
     halos = Halos(drawing, root) if any(style.halo for style in drawing.styles.values()) else None
     for index, body in enumerate(drawing.bodies):
-        color = body.style.color or themes.body_fill(index)
+        color = body.style.color or marks.body_fill(index)
         areas = list(_filled(body.region, body.style, color, size))
         line = max((area.ink.width for area in areas if area.ink is not None), default=0.0)
         for area in (*halos.around_body(body, line), *areas) if halos else areas:
@@ -349,15 +348,15 @@ def _marks(root: SolvedStructure, drawing: Drawing, size: float) -> Iterator[tup
             ink = Ink(_outline_color(styles[seam.body]), SEAM_WIDTH * size)
             ink = ink if seam.is_asked else replace(ink, opacity=_SEAM_OPACITY)
             yield seam.path, Curves(seam.pieces, ink, "seam")
-    marks = [(stroke, list(_strokes(stroke, size))) for stroke in drawing.strokes]
+    inked = [(stroke, list(_strokes(stroke, size))) for stroke in drawing.strokes]
     if halos:  # before all lines: those of a drawing, which may join, clear none of its own
-        for stroke, own in marks:
+        for stroke, own in inked:
             line = max((mark.ink.width for mark in own if mark.ink is not None), default=0.0)
             for mark in halos.around_stroke(stroke, line):
                 yield stroke.path, mark
     kinds = {structure.path: structure.kind for structure in root.walk()}
     below = {g.path: drawing_below(s, g) for s in root.walk() if s.structures for g in s.drawn}
-    for stroke, own in marks:
+    for stroke, own in inked:
         if stroke.is_area and (under := below.get(stroke.geometry)) is not None:
             yield from ((f"{under.path}{_OVER}", mark) for mark in own)
             continue
@@ -388,18 +387,18 @@ def _filled(
 
 
 def _outline_color(style: Style) -> str:
-    return themes.OUTLINE if style.color is None else themes.outline_of(style.color)
+    return marks.OUTLINE if style.color is None else marks.outline_of(style.color)
 
 
 def _strokes(stroke: Stroke, size: float) -> Iterator[Area | Curves]:
     style = stroke.style
     if stroke.role != "drawing":
-        ink = Ink(themes.LOOSE, STROKE_WIDTH * size, (DASH * size, GAP * size), is_round=True)
+        ink = Ink(marks.LOOSE, STROKE_WIDTH * size, (DASH * size, GAP * size), is_round=True)
         yield Curves(stroke.pieces, ink, stroke.role)
         return
-    color = style.color or themes.OUTLINE
+    color = style.color or marks.OUTLINE
     if stroke.over is not None:
-        color = themes.contrasting(stroke.over, style.color) if stroke.faces else themes.etched(stroke.over)
+        color = marks.contrasting(stroke.over, style.color) if stroke.faces else marks.etched(stroke.over)
     if stroke.is_area:
         yield from _filled(Region(stroke.faces), style, color, size, marks.AREA, stroke.whole)
         return
@@ -441,14 +440,14 @@ class Halos:
             wide = offset(body.region, by, sharp=False)
             if body.style.is_clear:
                 wide = without(wide, body.region)
-            yield from (Area(face, themes.PAPER, None, HALO) for face in wide.faces)
+            yield from (Area(face, marks.PAPER, None, marks.HALO) for face in wide.faces)
 
     def around_stroke(self, stroke: Stroke, line: float) -> Iterator[Area | Curves]:
         """Yields the gap around curves drawn as lines of a width; letters that are filled have lines of 0."""
         width = stroke.style.halo or 0.0
         if width > 0 and self._covers(stroke.path, _box(stroke), width + line / 2):
-            ink = Ink(themes.PAPER, line + 2 * width, is_round=True)
-            yield Curves(stroke.pieces, ink, HALO)
+            ink = Ink(marks.PAPER, line + 2 * width, is_round=True)
+            yield Curves(stroke.pieces, ink, marks.HALO)
 
     def _covers(self, path: str, box: Bounds, by: float) -> bool:
         """Tells whether the box of something, widened, meets that of something behind it."""

@@ -143,7 +143,11 @@ class _Walk:
             return
         if any(style.get(way, "none") != "none" for way in ("clip-path", "mask")):
             self.found.leave_out("clipped or masked shape")
-        matrix = self._transform(node, style, place.matrix)
+        try:
+            matrix = product(place.matrix, transform(node.attributes.get("transform", "")))
+        except (ValueMistake, ArithmeticError):
+            self.broken.append(_called(node))
+            matrix = place.matrix
         names, around = (*place.names, *_names(node)), (*place.around, node)
         place = _Place(matrix, place.page, style, names, around, *_engraved(node, place))
         if node.tag == "use":
@@ -240,14 +244,6 @@ class _Walk:
                 style |= properties
         style |= dict(declarations(node.attributes.get("style", "")))
         return {name: value for name, value in style.items() if value != "inherit"}
-
-    def _transform(self, node: Node, style: Mapping[str, str], matrix: Matrix) -> Matrix:
-        text = node.attributes.get("transform", "")
-        try:
-            return product(matrix, transform(text))
-        except (ValueMistake, ArithmeticError):
-            self.broken.append(_called(node))
-            return matrix
 
     def _length(self, node: Node, text: str, whole: float, otherwise: float = 0.0) -> float:
         try:

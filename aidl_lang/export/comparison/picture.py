@@ -47,14 +47,10 @@ def overlay(comparison: Comparison) -> Picture:
     size = larger_side(box) or 1.0
     shared = _shared_strokes(comparison)
     regions = parts([b.region for b in before.drawing.bodies], [b.region for b in after.drawing.bodies])
-    groups = [
-        *(Group(name, tuple(_filled(name, region, size))) for name, region in regions.items()),
-        *(
-            Group(f"{name}-outlines", tuple(_outlined(name, version, shared, size)))
-            for name, version in (("before", before), ("after", after))
-        ),
-        Group("moves", tuple(_arrows(comparison.structures, before, size))),
-    ]
+    groups = [Group(name, tuple(_filled(name, region, size))) for name, region in regions.items()]
+    for name, version in (("before", before), ("after", after)):
+        groups.append(Group(f"{name}-outlines", tuple(_outlined(name, version, shared, size))))
+    groups.append(Group("moves", tuple(_arrows(comparison.structures, before, size))))
     legend, below = _legend(regions, box, size)
     return Picture(widened(union_bounds([box, below]), MARGIN * size), (*groups, Group("legend", legend)))
 

@@ -115,7 +115,6 @@ def _spots(box: Bounds, pieces: Sequence[Piece]) -> Iterator[tuple[Vec, Vec]]:
 
 
 def _signs(view: View, factor: float) -> Iterator[Text]:
-    """Yields the signs of holes, beside them."""
     for hole in view.holes:
         (x, y), reach = hole.circle.center, 0.72 * hole.circle.radius + 0.8 / factor
         yield Text((x + reach, y + reach), hole.sign, SMALL / CAPITAL / factor, BLACK)
