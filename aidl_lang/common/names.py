@@ -146,11 +146,7 @@ def find(name: str, table: Mapping[str, T]) -> str | None:
 
     None if there is none, or if two keys fold alike and neither is written so.
     """
-    if name in table:
-        return name
-    wanted = fold(name)
-    alike = [key for key in table if fold(key) == wanted]
-    return alike[0] if len(alike) == 1 else None
+    return name if name in table else Spellings(table).find(name)
 
 
 _OPPOSITES = tuple(

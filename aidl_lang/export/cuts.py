@@ -173,13 +173,13 @@ def _apart(found: Sequence[Outline], profile: Profile) -> Iterator[Outline]:
         if len(together) < 2:
             yield from area if together else ()
             continue
-        for loop in united(*map(_region, together)).loops:
+        for loop in united(*(Region((_face(each),)) for each in together)).loops:
             yield replace(area[0], pieces=loop.pieces, clockwise=loop.reversed)
 
 
-def _region(area: Sequence[Outline]) -> Region:
+def _face(area: Iterable[Outline]) -> Face:
     first, *others = (outline.loop for outline in area)
-    return Region((Face(first, tuple(others)),))
+    return Face(first, tuple(others))
 
 
 def _bounding(stroke: Stroke, operation: str, profile: Profile, tolerance: float) -> list[Loop]:
@@ -317,9 +317,8 @@ def followed_groups(model: SolvedModel, drawing: Drawing, profile: Profile) -> I
 def _marks(run: Sequence[Outline], profile: Profile) -> Iterator[Mark]:
     for area, bounding in groupby(run, key=lambda o: o.area):
         if area:
-            first, *others = bounding
-            face = Face(first.loop, tuple(outline.loop for outline in others))
-            yield Area(face, profile.color(first), None, FILL)
+            together = list(bounding)
+            yield Area(_face(together), profile.color(together[0]), None, FILL)
             continue
         for outline in bounding:
             width = profile.look(outline.style.layer, outline.operation).width

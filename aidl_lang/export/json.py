@@ -46,20 +46,14 @@ def to_json(
 ) -> str:
     """Returns the document as text with one member per line, lists of numbers and polygons in one line."""
     document = to_dict(model, drawing, diagnostics, timings)
-    polygons = _cut_out(document)
+    polygons = []
+    for number, region in enumerate(document["regions"].values()):  # each has its number for a while
+        polygons.append(json.dumps(region["geometry"]["coordinates"]))
+        region["geometry"]["coordinates"] = number
     text = json.dumps(document, ensure_ascii=False, indent=1, allow_nan=False)
     # JSON strings hold no line breaks and no quotes, so these patterns are never inside one.
     text = _NUMBERS.sub(lambda match: "".join(match[0].split()).replace(",", ", "), text)
     return _POLYGONS.sub(lambda match: polygons[int(match[0])], text) + "\n"
-
-
-def _cut_out(document: Json) -> list[str]:
-    """Replaces the polygons of regions by their numbers in the list of texts it returns."""
-    polygons = []
-    for region in document["regions"].values():
-        polygons.append(json.dumps(region["geometry"]["coordinates"]))
-        region["geometry"]["coordinates"] = len(polygons) - 1
-    return polygons
 
 
 def to_dict(

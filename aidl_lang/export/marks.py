@@ -378,12 +378,34 @@ def spaced(picture: Picture, width: float, height: float) -> Picture:
 
 def coarse(picture: Picture, pixel: float) -> Picture:
     """Returns the picture with no line thinner than a `pixel`, mm."""
-    return _redrawn(picture, lambda mark: _thickened(mark, pixel))
+
+    def thickened(mark: Mark) -> Mark:
+        match mark:
+            case Area(ink=Ink() as ink) | Curves(ink=ink):
+                dash = ink.dash if ink.dash and min(ink.dash) > _SHORTEST_DASH * pixel else None
+                return replace(mark, ink=replace(ink, width=max(ink.width, pixel), dash=dash))
+            case Frame():
+                return replace(mark, width=max(mark.width, pixel))
+            case Dot():
+                return replace(mark, radius=max(mark.radius, pixel))
+        return mark
+
+    return _redrawn(picture, thickened)
 
 
 def resolved(picture: Picture, pixel: float) -> Picture:
     """Returns the picture with paler lines for dashes below a `pixel`, mm: of a million resvg draws none."""
-    return _redrawn(picture, lambda mark: _blurred(mark, pixel))
+
+    def blurred(mark: Mark) -> Mark:
+        match mark:
+            case Area(ink=Ink(dash=tuple() as dash) as ink) | Curves(ink=Ink(dash=tuple() as dash) as ink):
+                if sum(dash) > _SHORTEST_DASH * pixel:
+                    return mark
+                drawn = sum(dash[::2]) / sum(dash)
+                return replace(mark, ink=replace(ink, dash=None, opacity=drawn * ink.opacity))
+        return mark
+
+    return _redrawn(picture, blurred)
 
 
 def outlined(picture: Picture) -> Picture:
@@ -403,28 +425,6 @@ def _redrawn(picture: Picture, change: Callable[[Mark], Mark | None]) -> Picture
         for group in picture.groups
     )
     return replace(picture, groups=tuple(groups))
-
-
-def _thickened(mark: Mark, pixel: float) -> Mark:
-    match mark:
-        case Area(ink=Ink() as ink) | Curves(ink=ink):
-            dash = ink.dash if ink.dash and min(ink.dash) > _SHORTEST_DASH * pixel else None
-            return replace(mark, ink=replace(ink, width=max(ink.width, pixel), dash=dash))
-        case Frame():
-            return replace(mark, width=max(mark.width, pixel))
-        case Dot():
-            return replace(mark, radius=max(mark.radius, pixel))
-    return mark
-
-
-def _blurred(mark: Mark, pixel: float) -> Mark:
-    match mark:
-        case Area(ink=Ink(dash=tuple() as dash) as ink) | Curves(ink=Ink(dash=tuple() as dash) as ink):
-            if sum(dash) > _SHORTEST_DASH * pixel:
-                return mark
-            drawn = sum(dash[::2]) / sum(dash)
-            return replace(mark, ink=replace(ink, dash=None, opacity=drawn * ink.opacity))
-    return mark
 
 
 def _plain(mark: Mark) -> Mark | None:

@@ -272,7 +272,8 @@ def _constraints(at: Explainer, corner: Vec) -> list[Mark]:
     """Returns numbers near what the constraints mention, and their texts in a list; violated ones in red."""
     found: list[Mark] = []
     size, (left, top) = 0.7 * at.font, corner
-    things = _things(at.model.root)
+    every: list[_Thing] = [*at.model.root.walk(), *at.model.root.walk_geometry()]
+    things = {thing.path: thing for thing in reversed(every)}
     for number, constraint in enumerate(at.model.constraints, 1):
         checkpoint()
         color = marks.GOOD if constraint.satisfied else marks.BAD
@@ -298,12 +299,6 @@ def _spot(things: Mapping[str, _Thing], constraint: ConstraintReport) -> Bounds 
             y = sum(b[1] + b[3] for b in boxes) / (2 * len(boxes))
             return x, y, x, y
     return None
-
-
-def _things(root: SolvedStructure) -> dict[str, _Thing]:
-    """Returns all structures and geometry with its parts, by their paths."""
-    found: list[_Thing] = [*root.walk(), *root.walk_geometry()]
-    return {thing.path: thing for thing in reversed(found)}
 
 
 def _box_of(things: Mapping[str, _Thing], path: str) -> Bounds | None:

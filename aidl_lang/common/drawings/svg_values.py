@@ -269,11 +269,10 @@ class _Pen:
     ) -> None:
         self._add(_arc(self.here, end, abs(rx), abs(ry), rotation, bool(is_large), bool(is_clockwise)))
 
-    def closePath(self) -> None:  # noqa: N802
-        pass
-
     def endPath(self) -> None:  # noqa: N802
         pass
+
+    closePath = endPath  # noqa: N815
 
     def _add(self, stroke: Stroke) -> None:
         self.strokes.append(stroke)
