@@ -173,12 +173,10 @@ def _oversize(parts: Sequence[tuple[str, Size]], sheet: Size, spacing: float) ->
     else:
         message = f"{names} do not fit on a sheet of {size_text(sheet)}; `{path}` measures {size_text(size)}"
     around = f" with {fixed(spacing)} mm around it" if spacing else ""
-    return ExportError(
-        "E0923",
-        message,
-        f"{'it' if len(parts) == 1 else f'`{path}`'} needs a sheet of at least {size_text(needed)}{around}",
-        "to print it on small paper and join the pages, use `--tile a4` in place of `--sheet`",
-    )
+    largest = "it" if len(parts) == 1 else f"`{path}`"
+    hint = f"{largest} needs a sheet of at least {size_text(needed)}{around}"
+    paper = "to print it on small paper and join the pages, use `--tile a4` in place of `--sheet`"
+    return ExportError("E0923", message, hint, paper)
 
 
 def _stray_note(model: SolvedModel, strays: Sequence[Stroke]) -> Diagnostic:
@@ -197,13 +195,10 @@ def _slit_notes(job: Job, slits: Mapping[str, Sequence[Slit]]) -> Iterator[Diagn
         if own:
             structure, widths = job.model.root.find(path), sorted({fixed(round(s.width, 6)) for s in own})
             is_one = len(own) == 1
-            yield Diagnostic(
-                "N0757",
-                f"{counted(len(own), 'slit')} of `{path}` {'is' if is_one else 'are'} cut in one pass: "
-                f"{fixed(kerf)} mm wide, as the cut, and drawn {listed(widths)} mm wide",
-                None if structure is None else structure.span,
-                hints=(f"gaps wider than {fixed(WIDEST * kerf)} mm are cut along both sides",),
-            )
+            cut = f"{counted(len(own), 'slit')} of `{path}` {'is' if is_one else 'are'} cut in one pass"
+            message = f"{cut}: {fixed(kerf)} mm wide, as the cut, and drawn {listed(widths)} mm wide"
+            hint = f"gaps wider than {fixed(WIDEST * kerf)} mm are cut along both sides"
+            yield Diagnostic("N0757", message, None if structure is None else structure.span, hints=(hint,))
 
 
 def _widened(job: Job, by: float, progress: Progress) -> tuple[Drawing, dict[str, list[Slit]]]:

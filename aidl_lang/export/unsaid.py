@@ -62,18 +62,12 @@ def _blind(job: Job, suffix: str) -> Iterator[Diagnostic]:
     depths = {path: s.depth for path, s in job.drawing.styles.items() if s.is_blind}
     blind = [path for path in job.drawing.regions if path in depths]
     if blind and (job.options.followed is not None or suffix == ".dxf"):
-        what = (
-            "ends in its solid: its outline is"
-            if len(blind) == 1
-            else "end in their solid: their outlines are"
-        )
+        is_one = len(blind) == 1
+        what = "ends in its solid: its outline is" if is_one else "end in their solid: their outlines are"
         deep = listed(sorted({fixed(depths[path][0]) for path in blind}))
-        yield Diagnostic(
-            "N0756",
-            f"{named(blind, _NAMED)} {what} engraved, and nothing is cut there",
-            _span(job.model.root, blind[0]),
-            hints=(f"sink or mill there to the depth that is said: {deep} mm",),
-        )
+        message = f"{named(blind, _NAMED)} {what} engraved, and nothing is cut there"
+        hint = f"sink or mill there to the depth that is said: {deep} mm"
+        yield Diagnostic("N0756", message, _span(job.model.root, blind[0]), hints=(hint,))
 
 
 def _followed(job: Job) -> Iterator[Diagnostic]:
@@ -132,16 +126,15 @@ def twice_compensated(root: SolvedStructure, width: float) -> Iterator[Diagnosti
         first = holders[0]
         own = _own_kerf(first.params if isinstance(first, SolvedStructure) else first.values)
         more = f" and {len(shapes) - 1} more" if len(shapes) > 1 else ""
+        twice = f"by `--kerf` and by the `kerf` of `{first.path}`{more}"
+        label = f"drawn for a cut of {fixed(own)} mm, and grown for one of {fixed(width)} mm"
+        without = "or have the program draw without it: with `-D kerf=0` if it is a `param`"
         yield Diagnostic(
             "N0742",
-            "the width of the cut is made up for twice: "
-            f"by `--kerf` and by the `kerf` of `{first.path}`{more}",
+            f"the width of the cut is made up for twice: {twice}",
             first.span,
-            f"drawn for a cut of {fixed(own)} mm, and grown for one of {fixed(width)} mm",
-            hints=(
-                "leave out `--kerf`: the program does it",
-                "or have the program draw without it: with `-D kerf=0` if it is a `param`",
-            ),
+            label,
+            hints=("leave out `--kerf`: the program does it", without),
         )
 
 
