@@ -9,7 +9,7 @@ import sys
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
-from functools import partial, singledispatch
+from functools import partial
 from importlib import import_module
 from types import ModuleType
 from typing import Any
@@ -233,24 +233,25 @@ def _clean(text: str) -> str:
     return _NOT_XML.sub("\ufffd", text)
 
 
-@singledispatch
 def _element(mark: Mark, svg: Any) -> Any:
-    raise TypeError(mark)
-
-
-@_element.register
-def _(mark: Area, svg: Any) -> Any:
-    looks = {"fill": mark.fill or "none", "fill_rule": "evenodd"}
-    if mark.opacity != 1:
-        looks["fill_opacity"] = fixed(mark.opacity)
-    looks |= {"stroke": "none"} if mark.ink is None else _looks(mark.ink, closed=True)
-    return svg.path(d=face_path(mark.face), **looks, **_role(mark.role))
-
-
-@_element.register
-def _(mark: Curves, svg: Any) -> Any:
-    looks = {"fill": "none"} | _looks(mark.ink)
-    return svg.path(d=open_path(mark.pieces), **looks, **_role(mark.role))
+    match mark:
+        case Area():
+            looks = {"fill": mark.fill or "none", "fill_rule": "evenodd"}
+            if mark.opacity != 1:
+                looks["fill_opacity"] = fixed(mark.opacity)
+            looks |= {"stroke": "none"} if mark.ink is None else _looks(mark.ink, closed=True)
+            return svg.path(d=face_path(mark.face), **looks, **_role(mark.role))
+        case Curves():
+            looks = {"fill": "none"} | _looks(mark.ink)
+            return svg.path(d=open_path(mark.pieces), **looks, **_role(mark.role))
+        case Text():
+            return _text(mark, svg)
+        case Dot(at, radius, color):
+            center, width = (fixed(at[0]), fixed(-at[1])), fixed(0.3 * radius)
+            looks = {"fill": color, "stroke": "#ffffff", "stroke_width": width}
+            return svg.circle(center=center, r=fixed(radius), **looks)
+        case Frame():
+            return _rectangle(mark.box, svg, fill="none", **_looks(mark.ink))
 
 
 def _role(role: str) -> dict[str, str]:
@@ -270,8 +271,7 @@ def _looks(ink: Ink, *, closed: bool = False) -> dict[str, str]:
     return looks
 
 
-@_element.register
-def _(mark: Text, svg: Any) -> Any:
+def _text(mark: Text, svg: Any) -> Any:
     looks = {"font_size": fixed(mark.size), "font_family": FONT, "fill": mark.color}
     if mark.anchor != "start":
         looks["text_anchor"] = mark.anchor
@@ -291,22 +291,6 @@ def _(mark: Text, svg: Any) -> Any:
     both.add(halo)
     both.add(text)
     return both
-
-
-@_element.register
-def _(mark: Dot, svg: Any) -> Any:
-    return svg.circle(
-        center=(fixed(mark.at[0]), fixed(-mark.at[1])),
-        r=fixed(mark.radius),
-        fill=mark.color,
-        stroke="#ffffff",
-        stroke_width=fixed(0.3 * mark.radius),
-    )
-
-
-@_element.register
-def _(mark: Frame, svg: Any) -> Any:
-    return _rectangle(mark.box, svg, fill="none", **_looks(mark.ink))
 
 
 def _rectangle(box: Bounds, svg: Any, **looks: str) -> Any:
