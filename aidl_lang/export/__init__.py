@@ -105,12 +105,9 @@ def require_sheets(options: Options) -> None:
     """Raises ExportError if something is to be shown of parts on sheets, and there are none."""
     asked = sorted(options.show.intersection(ON_SHEETS) - {"names"})
     if asked and options.sheet is None:
-        raise ExportError(
-            "E0924",
-            f"`--show {','.join(asked)}` is about the parts on sheets, and there are none",
-            "lay them on sheets: `--sheet 600x400`",
-            "the list alone is written by `-o cutlist.csv`",
-        )
+        message = f"`--show {','.join(asked)}` is about the parts on sheets, and there are none"
+        hints = "lay them on sheets: `--sheet 600x400`", "the list alone is written by `-o cutlist.csv`"
+        raise ExportError("E0924", message, *hints)
 
 
 def _check(options: Options, suffix: str, wanted: Format) -> None:
@@ -126,21 +123,19 @@ def _check(options: Options, suffix: str, wanted: Format) -> None:
     refuse("--kerf", options.kerf > 0, "cuts")
     refuse("--profile", options.profile is not None, "cuts")
     if options.nest is not None and options.sheet is None:
-        raise ExportError(
-            "E0924", "`--nest` packs parts on sheets, and there is none", "give one: `--sheet 600x400`"
-        )
+        message = "`--nest` packs parts on sheets, and there is none"
+        raise ExportError("E0924", message, "give one: `--sheet 600x400`")
     require_sheets(options)
     refuse(f"--units {options.units}", options.units != "mm", "inches")
     refuse("--tile", options.tile is not None, "tiles")
     refuse("--theme", options.theme != "colour", "tiles")
+    apart = "write it to a file of its own, without `--cut`, `--profile`, `--sheet` and `--kerf`"
     if options.theme not in ("colour", "cutter") and options.for_cutter:
         message = f"`--theme {options.theme}` colours a picture, and a cutter goes by colours of its own"
-        hint = "write it to a file of its own, without `--cut`, `--profile`, `--sheet` and `--kerf`"
-        raise ExportError("E0924", message, hint)
+        raise ExportError("E0924", message, apart)
     if options.dimension and options.for_cutter and wanted.cuts:
         message = "`--dimension` explains the assembled drawing and has no place among what a cutter follows"
-        hint = "write it to a file of its own, without `--cut`, `--profile`, `--sheet` and `--kerf`"
-        raise ExportError("E0924", message, hint)
+        raise ExportError("E0924", message, apart)
 
 
 def suffix_of(

@@ -39,9 +39,8 @@ def jobs_of_parts(job: Job) -> Iterator[tuple[Item, Job]]:
         raise ExportError("E0926", message, "write it to a file of its own")
     items = job.cut_list.items
     if not items:
-        raise ExportError(
-            "E0926", "there is no part to write", "only a `solid` is cut; a `drawing` is engraved"
-        )
+        hint = "only a `solid` is cut; a `drawing` is engraved"
+        raise ExportError("E0926", "there is no part to write", hint)
     alone = replace(options, cut=options.for_cutter, sheet=None, nest=None, kerf=0.0, show=frozenset())
     found = {part.body.path: part for part in parts_of(job.model.root, job.drawing)[0]}
     for item in items:
@@ -265,9 +264,8 @@ def to_csv(jobs: Sequence[Job]) -> Exported:
     """Writes the list, and below it that of the sheets. Raises ExportError if there is no part."""
     found = jobs[0].cut_list
     if not found.items:
-        raise ExportError(
-            "E0924", "there is no part to list", "only a `solid` is cut; a `drawing` is engraved on it"
-        )
+        hint = "only a `solid` is cut; a `drawing` is engraved on it"
+        raise ExportError("E0924", "there is no part to list", hint)
     rows = [_PARTS, *(_line(item, _DECIMALS) for item in found.items)]
     if jobs[0].options.sheet is not None:
         rows += [(), _SHEETS, *_sheets(found, jobs, _DECIMALS)]
