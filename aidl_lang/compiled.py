@@ -19,9 +19,9 @@ if TYPE_CHECKING:
     from aidl_lang.explaining.failures import Conflict
     from aidl_lang.export import Exporter
     from aidl_lang.export.comparison import Comparison
-    from aidl_lang.export.cut_list import Item
     from aidl_lang.export.drafting import Draft
     from aidl_lang.export.job import Exported, Options, Progress
+    from aidl_lang.export.sheets import Item
     from aidl_lang.geometry.drawing import Drawing
     from aidl_lang.geometry.solved import SolvedModel
     from aidl_lang.geometry.survey import Part, Survey

@@ -133,7 +133,7 @@ class Geometry:
             return self.trace.silhouette
         from aidl_lang.common.lettering import silhouette
 
-        return silhouette(self.glyphs)
+        return silhouette([curve for glyph in self.glyphs for curve in glyph.curves])
 
     @property
     def value_type(self) -> Type:

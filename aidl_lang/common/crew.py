@@ -7,6 +7,7 @@ import time
 from collections.abc import Callable, Hashable
 from concurrent.futures import FIRST_COMPLETED, Future, wait
 from dataclasses import replace
+from importlib.util import find_spec
 from typing import Any, Generic, TypeVar
 
 from aidl_lang.common.diagnostics import AidlError, Diagnostic
@@ -147,7 +148,7 @@ def _once_more(call: _Call[K, T], error: BaseException) -> _Call[K, T] | None:
     is_unlucky = (deaths > call.deaths and deaths < _LIVES) or (losses > call.losses and losses < _RETURNS)
     if not is_unlucky:
         return None
-    return _Call(call.key, call.seconds, call.task, call.arguments, deaths, losses)
+    return replace(call, deaths=deaths, losses=losses)
 
 
 # --- Calls on a cluster: a scheduler of Dask and its workers, which come and go.
@@ -179,7 +180,9 @@ class Cluster:
             hints = did_you_mean(f"{near}://{rest}" for near in nearest(protocol, PROTOCOLS)[:1] if rest)
             there = "there is `local`, and the scheduler of a cluster, as in `tcp://127.0.0.1:8786`"
             raise AidlError(Diagnostic("E0976", f"there is no engine `{address}`", hints=(*hints, there)))
-        _require()
+        if find_spec("distributed") is None:
+            message = "a cluster needs a package that is not installed"
+            raise AidlError(Diagnostic("E0913", message, hints=("pip install 'aidl-lang[cluster]'",)))
         from distributed import Client
 
         self.address, self._preload = address, preload
@@ -254,7 +257,6 @@ class Cluster:
             local.set_exception(RuntimeError(": ".join(map(str, found))))
 
     def _error(self, remote: Any, error: Exception) -> Exception:
-        """Returns the error of a call that brought no result from its worker."""
         from distributed.client import FutureCancelledError
         from distributed.scheduler import KilledWorker
 
@@ -294,14 +296,6 @@ def _other(worker: str, version: str) -> EngineError:
     return EngineError(Diagnostic("E0977", message, hints=(hint,)))
 
 
-def _require() -> None:
-    from importlib.util import find_spec
-
-    if find_spec("distributed") is None:
-        message = "a cluster needs a package that is not installed"
-        raise AidlError(Diagnostic("E0913", message, hints=("pip install 'aidl-lang[cluster]'",)))
-
-
 def _short(error: BaseException) -> str:
     return (str(error).splitlines() or [type(error).__name__])[0][:200]
 
@@ -329,7 +323,6 @@ def carried(
 
 
 def _pool(preload: str, threads: int) -> Guarded:
-    """Returns the guarded processes of this worker, one for each of its threads."""
     with _starting:
         if preload not in _pools:
             _pools[preload] = Guarded(threads, preload)

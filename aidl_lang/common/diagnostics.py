@@ -130,12 +130,9 @@ def within_limit(diagnostics: Sequence[Diagnostic]) -> list[Diagnostic]:
 
 
 def too_many_errors(span: Span | None, most: int) -> Diagnostic:
-    return Diagnostic(
-        "E0803",
-        f"more than {most} errors; what comes after this is not told",
-        span,
-        hints=("mend the first ones and check again: later ones often follow from them",),
-    )
+    hint = "mend the first ones and check again: later ones often follow from them"
+    message = f"more than {most} errors; what comes after this is not told"
+    return Diagnostic("E0803", message, span, hints=(hint,))
 
 
 def has_errors(diagnostics: Iterable[Diagnostic]) -> bool:
@@ -202,18 +199,10 @@ class TooLongError(AidlError):
     """Work on a drawing takes too long: names it and, if known, the part of the program to blame."""
 
     def __init__(self, doing: str, seconds: float, span: Span | None = None, label: str = "") -> None:
-        super().__init__(
-            Diagnostic(
-                "E0805",
-                f"{doing} what this program says takes more than {seconds:g} seconds",
-                span,
-                label,
-                hints=(
-                    "it has too many curves, or too many that cross: fewer copies, or a wider `pitch`, "
-                    "take less; the limit is a setting of the API",
-                ),
-            )
-        )
+        message = f"{doing} what this program says takes more than {seconds:g} seconds"
+        cause = "it has too many curves, or too many that cross: fewer copies, or a wider `pitch`, take less"
+        hints = (f"{cause}; the limit is a setting of the API",)
+        super().__init__(Diagnostic("E0805", message, span, label, hints=hints))
 
 
 @contextmanager

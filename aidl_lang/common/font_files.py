@@ -15,6 +15,7 @@ from collections.abc import Iterator, Sequence
 from functools import cached_property
 from io import BytesIO
 from itertools import pairwise
+from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
 from aidl_lang.common.running import checkpoint
@@ -35,20 +36,11 @@ _MOST_COMPONENTS = 200
 _MOST_STEPS = 200_000
 """Bytes of the programs that draw one character, each counted as often as it is called."""
 
-_BROKEN = (
-    ArithmeticError,
-    AssertionError,
-    AttributeError,
-    EOFError,
-    LookupError,
-    NameError,
-    NotImplementedError,
-    RecursionError,
-    TypeError,
-    ValueError,
-    struct.error,
+FAULTS = (
+    *(ArithmeticError, AssertionError, AttributeError, EOFError, LookupError, NameError, NotImplementedError),
+    *(OSError, RecursionError, StopIteration, TypeError, ValueError, struct.error),
 )
-"""What fontTools raises for files that are not as they should be, beside its own error."""
+"""What libraries raise for files that are not as they should be, beside their own errors."""
 
 # What fontTools would say of a file is told by diagnostics; it is not printed beside them.
 logging.getLogger("fontTools").addHandler(logging.NullHandler())
@@ -75,7 +67,7 @@ class FontFile:
             self._advances: dict[str, tuple[int, int]] = self._file["hmtx"].metrics
             if not self.capital_height > 0.0:
                 raise FontError("it does not say how high its capitals are, and has no H")
-        except (*_BROKEN, TTLibError) as reason:
+        except (*FAULTS, TTLibError) as reason:
             raise FontError("its contents are broken") from reason
 
     def __contains__(self, character: str) -> bool:
@@ -88,7 +80,7 @@ class FontFile:
         try:
             name = self._file.getGlyphName(self._characters[ord(character)])
             return self._curves_of(name), float(self._advances[name][0])
-        except (*_BROKEN, TTLibError) as reason:
+        except (*FAULTS, TTLibError) as reason:
             raise FontError(f"its outline of `{character}` is broken") from reason
 
     @cached_property
@@ -125,12 +117,9 @@ class _Characters:
         self._lasts = [last for _, last, _ in self._runs]
 
     def __contains__(self, code: int) -> bool:
-        return self._glyph(code) > 0
+        return self[code] > 0
 
     def __getitem__(self, code: int) -> int:
-        return self._glyph(code)
-
-    def _glyph(self, code: int) -> int:
         """Returns the number of a glyph; 0, which is the sign for a missing character, if there is none."""
         k = bisect_left(self._lasts, code)
         if k == len(self._runs) or self._runs[k][0] > code:
@@ -191,22 +180,15 @@ class _Drawers:
     """The glyphs of a font by name, as a pen of fontTools looks them up, for one that is made of others."""
 
     def __init__(self, draw: Any) -> None:
-        self._draw, self._count, self._depth = draw, 0, 0
+        self._draw, self._count = draw, 0
 
-    def __getitem__(self, name: str) -> _Drawer:
+    def __getitem__(self, name: str) -> SimpleNamespace:
         self._count += 1
         if self._count > _MOST_COMPONENTS:
             raise FontError(f"it has a character made of more than {_MOST_COMPONENTS} others")
         checkpoint()
-        return _Drawer(self._draw, name, is_part=self._count > 1)
-
-
-class _Drawer:
-    def __init__(self, draw: Any, name: str, *, is_part: bool) -> None:
-        self._draw, self._name, self._is_part = draw, name, is_part
-
-    def draw(self, pen: Any) -> None:
-        self._draw(self._name, pen, self._is_part)
+        is_part = self._count > 1
+        return SimpleNamespace(draw=lambda pen: self._draw(name, pen, is_part))
 
 
 def _true_type(file: TTFont) -> Any:

@@ -53,15 +53,10 @@ def box_around(glyphs: Sequence[Glyph]) -> Box:
     return min(lefts), min(bottoms), max(rights), max(tops)
 
 
-def silhouette(glyphs: Sequence[Glyph]) -> tuple[Curve, ...]:
-    """Returns the corners of the convex hull of the ink, each alone, and the curves of which a part may lie
-    on it. In every direction the furthest point of the ink belongs to one of these.
+def silhouette(curves: Sequence[Curve]) -> tuple[Curve, ...]:
+    """Returns the corners of the convex hull of curves, each alone, and the curves of which a part may lie on
+    it. In every direction the furthest point of all belongs to one of these.
     """
-    return silhouette_of([curve for glyph in glyphs for curve in glyph.curves])
-
-
-def silhouette_of(curves: Sequence[Curve]) -> tuple[Curve, ...]:
-    """Returns the silhouette of any curves, as of letters."""
     hull = _Hull([p for curve in curves for p in _samples(curve)])
     bent = [c for c in curves if len(c) > 2 and not all(p in hull for p in c)]
     ends = {p for c in curves for p in (c[0], c[-1])}
@@ -244,7 +239,6 @@ def replacement(character: str) -> str | None:
 # It is written in `fonts/SingleLine.txt`, which says how. Corners are arcs as cubic Bézier curves, which for
 # a quarter of a circle are off by 0.03 % of the radius (Riškus, 2006).
 
-_FILE = "aidl_lang/common/fonts/SingleLine.txt"
 _SPACE, _BETWEEN = 4.0, 2.4
 """Widths of a blank, and between two characters, in tenths of the height of a capital."""
 _WITHOUT_DOT = {"i": "\u0131", "j": "\u0237"}
@@ -256,7 +250,7 @@ class SingleLines:
     capital_height = 10.0
 
     def __init__(self) -> None:
-        lines = resource(_FILE).read_text(encoding="utf-8").splitlines()
+        lines = resource(f"{_FOLDER}/SingleLine.txt").read_text(encoding="utf-8").splitlines()
         rows = [line for line in lines if line and not line.startswith("//")]
         self._written = {row[0]: row[1:].split(maxsplit=1) for row in rows}
 
@@ -311,17 +305,13 @@ def _way(words: Sequence[str]) -> Iterator[Curve]:
     ]
     if is_closed:
         rounded.append(rounded[0])
-    for k, (one, other) in enumerate(pairwise(rounded)):
-        if k or not is_closed:
-            yield from _bend(one)
+    elif len(rounded[0]) > 1:
+        yield rounded[0]
+    for one, other in pairwise(rounded):
         if math.dist(one[-1], other[0]) > 1e-9:
             yield one[-1], other[0]
-    yield from _bend(rounded[-1])
-
-
-def _bend(curve: Curve) -> Iterator[Curve]:
-    if len(curve) > 1:
-        yield curve
+        if len(other) > 1:
+            yield other
 
 
 def _rounded(before: Vec, at: Vec, after: Vec, radius: float) -> Curve:

@@ -117,9 +117,8 @@ _ABOVE = {
 }
 """How far a shaft goes beyond its size at least, µm."""
 
-_TIGHT_GRADES = {"k": (5, 6, 7), "m": (5, 6, 7), "n": (5, 6, 7), "p": (5, 6, 7)}
-_TIGHT_HOLES = (7,)
-"""Grades of holes of these letters; others have exceptions in the standard."""
+_TIGHT_SHAFTS, _TIGHT_HOLES = (5, 6, 7), (7,)
+"""Grades of shafts and holes of these letters; others have exceptions in the standard."""
 
 LARGEST = _UP_TO[-1]
 
@@ -169,5 +168,5 @@ def _parsed(text: str) -> tuple[str, int] | None:
         return None
     if kind in _BELOW or kind == "js":
         return letter, grade
-    allowed = _TIGHT_HOLES if letter.isupper() else _TIGHT_GRADES.get(kind, ())
+    allowed = _TIGHT_HOLES if letter.isupper() else _TIGHT_SHAFTS
     return (letter, grade) if kind in _ABOVE and grade in allowed else None

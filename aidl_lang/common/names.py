@@ -132,15 +132,13 @@ _MOST_LETTERS = 200_000
 """Pairs of letters that one search for a name compares: enough for some hundred names of ordinary length."""
 
 
-@lru_cache(maxsize=4096)
-def fold(name: str) -> str:
-    """Returns the form that `CenterInside`, `centerInside` and `center_inside` have in common."""
-    return folded(name)
-
-
 def folded(text: str) -> str:
-    """Returns the same of a whole program, which is not remembered as names are."""
+    """Returns the form that `CenterInside`, `centerInside` and `center_inside` have in common."""
     return text.replace("_", "").casefold()
+
+
+fold = lru_cache(maxsize=4096)(folded)
+"""The same for names, which are remembered, as whole programs are not."""
 
 
 def find(name: str, table: Mapping[str, T]) -> str | None:
@@ -148,11 +146,7 @@ def find(name: str, table: Mapping[str, T]) -> str | None:
 
     None if there is none, or if two keys fold alike and neither is written so.
     """
-    if name in table:
-        return name
-    wanted = fold(name)
-    alike = [key for key in table if fold(key) == wanted]
-    return alike[0] if len(alike) == 1 else None
+    return name if name in table else Spellings(table).find(name)
 
 
 _OPPOSITES = tuple(

@@ -99,6 +99,11 @@ def first_few(words: Collection[str], most: int, rest: str = " and {} more", bet
     return between.join(islice(words, most)) + (rest.format(left) if left > 0 else "")
 
 
+def shortened(text: str, most: int) -> str:
+    """Returns a text of at most so many characters, with `…` for the rest."""
+    return text if len(text) <= most else f"{text[: most - 1]}…"
+
+
 def did_you_mean(names: Iterable[str]) -> list[str]:
     """Returns a hint that names what may have been meant; no hint without names."""
     said = " or ".join(ticked(names))

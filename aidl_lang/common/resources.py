@@ -58,13 +58,18 @@ def derived(name: str, inputs: Callable[[], Iterable[Path]], make: Callable[[], 
 
 def _kept(name: str, inputs: Iterable[Path]) -> Path:
     """Returns the file of a checkout whose name holds a digest of everything its content depends on."""
-    digest = hashlib.sha256()
-    for path in inputs:
-        data = path.read_bytes()
-        digest.update(f"{path.name} {len(data)}\n".encode())
-        digest.update(data)
     stem, suffix = os.path.splitext(name)
-    return _CHECKOUT / "build" / "derived" / f"{stem}-{digest.hexdigest()[:32]}{suffix}"
+    digest = _digest((path.name, path) for path in inputs)
+    return _CHECKOUT / "build" / "derived" / f"{stem}-{digest[:32]}{suffix}"
+
+
+def _digest(files: Iterable[tuple[str, Path]]) -> str:
+    digest = hashlib.sha256()
+    for name, path in files:
+        data = path.read_bytes()
+        digest.update(f"{name} {len(data)}\n".encode())
+        digest.update(data)
+    return digest.hexdigest()
 
 
 def _keep(path: Path, data: bytes) -> None:
@@ -118,16 +123,11 @@ _NUMBERS = ("numpy", "scipy", "manifold3d", "ezdxf", "fonttools", "reportlab", "
 @cache
 def package() -> str:
     """Returns `0.9.0+3f2a…`: the version, and a digest of code, grammar and standard library."""
-    code = Path(__file__).resolve().parents[1]
-    digest = hashlib.sha256()
-    shipped = [(path, path.relative_to(code)) for path in code.rglob("*.py") if "_data" not in path.parts]
+    code = [path for path in _PACKAGE.rglob("*.py") if "_data" not in path.parts]
+    shipped = [(path.relative_to(_PACKAGE).as_posix(), path) for path in code]
     for name in ("stdlib", "grammar"):
-        shipped += [(path, Path(name, path.name)) for path in resource(name).iterdir() if path.is_file()]
-    for path, place in sorted(shipped, key=lambda each: each[1].as_posix()):
-        data = path.read_bytes()
-        digest.update(f"{place.as_posix()} {len(data)}\n".encode())
-        digest.update(data)
-    return f"{__version__}+{digest.hexdigest()[:16]}"
+        shipped += [(f"{name}/{path.name}", path) for path in resource(name).iterdir() if path.is_file()]
+    return f"{__version__}+{_digest(sorted(shipped))[:16]}"
 
 
 @cache

@@ -159,11 +159,7 @@ def is_drawing(path: str) -> bool:
     return PurePath(path).suffix.lower() in DRAWINGS
 
 
-_REASONS = {
-    errno.ENOENT: "MISSING",
-    errno.ENOTDIR: "MISSING",
-    errno.EFBIG: "TOO_LARGE",
-}
+_REASONS = {errno.ENOENT: "MISSING", errno.ENOTDIR: "MISSING", errno.EFBIG: "TOO_LARGE"}
 
 
 class ReadFailure(StrEnum):
@@ -296,14 +292,12 @@ class KeptWorld:
         self._bytes: dict[str, bytes] = {}
 
     def read(self, path: str) -> str:
-        wanted = normalize(path)
-        if wanted not in self._texts:
+        if (wanted := normalize(path)) not in self._texts:
             self._texts[wanted] = self._world.read(path)
         return self._texts[wanted]
 
     def read_bytes(self, path: str) -> bytes:
-        wanted = normalize(path)
-        if wanted not in self._bytes:
+        if (wanted := normalize(path)) not in self._bytes:
             self._bytes[wanted] = self._world.read_bytes(path)
         return self._bytes[wanted]
 

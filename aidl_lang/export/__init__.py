@@ -14,27 +14,24 @@ from aidl_lang.common.records import record
 from aidl_lang.export.job import ON_SHEETS, Exported, ExportError, Job, Options, Progress, require
 
 if TYPE_CHECKING:
-    from aidl_lang.export.cut_list import Item
     from aidl_lang.export.marks import Picture
-
-_OF_CUTTERS = ("--sheet", "--kerf", "--profile")
-"""Options of formats that a cutter follows."""
+    from aidl_lang.export.sheets import Item
 
 
 @record()
 class Format:
-    """A writer. `extra` names the optional extra of the package that installs the module it needs.
+    """A writer, which has the jobs of all sheets.
 
-    `label` describes the file in menus; a format without one is asked for by its suffix alone.
-    `cuts` tells whether it holds outlines for a cutter, `tiles` whether it can be printed over several pages,
-    `inches` whether it may be in other units than mm.
-    `write` has the jobs of all sheets.
+    label   describes the file in menus; a format without one is asked for by its suffix alone
+    needs   the module that it needs, and the extra of the package that installs that
+    cuts    whether it holds outlines for a cutter
+    tiles   whether it is a picture, which can be printed over several pages
+    inches  whether it may be in other units than mm
     """
 
     write: Callable[[Sequence[Job]], Exported]
     label: str = ""
-    needs: str | None = None
-    extra: str | None = None
+    needs: tuple[str, str] | None = None
     cuts: bool = False
     tiles: bool = False
     inches: bool = False
@@ -50,12 +47,14 @@ class Exporter:
 
     def write(self, suffix: str) -> Exported:
         """Writes the drawing in the format of a file suffix (`.svg`). Raises as `export` does."""
+        from aidl_lang.export.unsaid import notes_of
+
         wanted, job = FORMATS[suffix], self._job
-        if wanted.needs is not None and wanted.extra is not None:
-            require(wanted.needs, suffix, wanted.extra)
+        if wanted.needs is not None:
+            require(wanted.needs[0], suffix, wanted.needs[1])
         _check(job.options, suffix, wanted)
         jobs, notes = [job], [] if suffix == ".json" else _emptiness(job)
-        unsaid = _unsaid(job, suffix, cuts=wanted.cuts)
+        unsaid = notes_of(job, suffix, cuts=wanted.cuts)
         if job.options.sheet is not None or job.options.kerf:
             jobs, notes = self._prepared
         made = wanted.write(jobs)
@@ -63,14 +62,11 @@ class Exporter:
 
     def write_parts(self, suffix: str) -> list[tuple[Item, Exported]]:
         """Writes each different part by itself, flat, its corner at the origin; raises as `export`."""
-        from aidl_lang.export.cut_list import jobs_of_parts
+        from aidl_lang.export.sheets import jobs_of_parts
 
         if suffix in (".json", ".csv"):
-            raise ExportError(
-                "E0926",
-                f"`{suffix}` tells of the whole, and is not written part by part",
-                "give it a name without `{part}`",
-            )
+            message = f"`{suffix}` tells of the whole, and is not written part by part"
+            raise ExportError("E0926", message, "give it a name without `{part}`")
         _check(replace(self._job.options, sheet=None, nest=None, show=frozenset()), suffix, FORMATS[suffix])
         job, notes = self._grown if self._job.options.kerf else (self._job, [])
         made = []
@@ -109,39 +105,37 @@ def require_sheets(options: Options) -> None:
     """Raises ExportError if something is to be shown of parts on sheets, and there are none."""
     asked = sorted(options.show.intersection(ON_SHEETS) - {"names"})
     if asked and options.sheet is None:
-        raise ExportError(
-            "E0924",
-            f"`--show {','.join(asked)}` is about the parts on sheets, and there are none",
-            "lay them on sheets: `--sheet 600x400`",
-            "the list alone is written by `-o cutlist.csv`",
-        )
+        message = f"`--show {','.join(asked)}` is about the parts on sheets, and there are none"
+        hints = "lay them on sheets: `--sheet 600x400`", "the list alone is written by `-o cutlist.csv`"
+        raise ExportError("E0924", message, *hints)
 
 
 def _check(options: Options, suffix: str, wanted: Format) -> None:
     """Raises ExportError if the options ask a format for what it cannot have."""
-    _refuse(suffix, "--sheet", options.sheet is not None and not wanted.cuts)
-    _refuse(suffix, "--kerf", options.kerf > 0 and not wanted.cuts)
-    _refuse(suffix, "--profile", options.profile is not None and not wanted.cuts)
+
+    def refuse(option: str, is_asked: bool, ability: str) -> None:
+        if is_asked and not getattr(wanted, ability):
+            able = sorted(s for s, f in FORMATS.items() if getattr(f, ability))
+            message = f"`{option}` has no meaning for `{suffix}`"
+            raise ExportError("E0924", message, f"formats for it: {', '.join(able)}")
+
+    refuse("--sheet", options.sheet is not None, "cuts")
+    refuse("--kerf", options.kerf > 0, "cuts")
+    refuse("--profile", options.profile is not None, "cuts")
     if options.nest is not None and options.sheet is None:
-        raise ExportError(
-            "E0924", "`--nest` packs parts on sheets, and there is none", "give one: `--sheet 600x400`"
-        )
+        message = "`--nest` packs parts on sheets, and there is none"
+        raise ExportError("E0924", message, "give one: `--sheet 600x400`")
     require_sheets(options)
-    _refuse(suffix, f"--units {options.units}", options.units != "mm" and not wanted.inches)
-    _refuse(suffix, "--tile", options.tile is not None and not wanted.tiles)
-    _refuse(suffix, "--theme", options.theme != "colour" and suffix not in PICTURES)
+    refuse(f"--units {options.units}", options.units != "mm", "inches")
+    refuse("--tile", options.tile is not None, "tiles")
+    refuse("--theme", options.theme != "colour", "tiles")
+    apart = "write it to a file of its own, without `--cut`, `--profile`, `--sheet` and `--kerf`"
     if options.theme not in ("colour", "cutter") and options.for_cutter:
-        raise ExportError(
-            "E0924",
-            f"`--theme {options.theme}` colours a picture, and a cutter goes by colours of its own",
-            "write it to a file of its own, without `--cut`, `--profile`, `--sheet` and `--kerf`",
-        )
+        message = f"`--theme {options.theme}` colours a picture, and a cutter goes by colours of its own"
+        raise ExportError("E0924", message, apart)
     if options.dimension and options.for_cutter and wanted.cuts:
-        raise ExportError(
-            "E0924",
-            "`--dimension` explains the assembled drawing and has no place among what a cutter follows",
-            "write it to a file of its own, without `--cut`, `--profile`, `--sheet` and `--kerf`",
-        )
+        message = "`--dimension` explains the assembled drawing and has no place among what a cutter follows"
+        raise ExportError("E0924", message, apart)
 
 
 def suffix_of(
@@ -170,39 +164,6 @@ def _emptiness(job: Job) -> list[Diagnostic]:
     return [Diagnostic("W0721", "nothing is drawn, so what is written is empty", hints=hints)]
 
 
-def _unsaid(job: Job, suffix: str, *, cuts: bool) -> list[Diagnostic]:
-    from aidl_lang.export.unsaid import blind_notes, followed_notes, unsaid_notes
-
-    said = [*blind_notes(job, suffix), *followed_notes(job)] if cuts else []
-    return unsaid_notes(job, suffix, cuts=cuts) + said
-
-
-def _refuse(suffix: str, option: str, is_refused: bool) -> None:
-    if is_refused:
-        able = sorted(
-            s
-            for s, f in FORMATS.items()
-            if (f.cuts if option in _OF_CUTTERS else f.inches if "units" in option else f.tiles)
-        )
-        raise ExportError(
-            "E0924", f"`{option}` has no meaning for `{suffix}`", f"formats for it: {', '.join(able)}"
-        )
-
-
-def _files(parts: Sequence[Exported]) -> Exported:
-    """Joins several contents to one file with the others beside it."""
-    data, *further = (content for part in parts for content in (part.data, *part.further))
-    return Exported(data, tuple(further), tuple(note for part in parts for note in part.notes))
-
-
-def _pages_of_list(jobs: Sequence[Job]) -> list[Picture]:
-    if "list" not in jobs[0].options.show:
-        return []
-    from aidl_lang.export.cut_list import pages
-
-    return pages(jobs)
-
-
 def _unlisted(job: Job, suffix: str) -> list[Diagnostic]:
     if "list" not in job.options.show or suffix in (*PICTURES, ".csv"):
         return []
@@ -217,7 +178,11 @@ def _pictures(suffix: str) -> Callable[[Sequence[Job]], Exported]:
         from aidl_lang.export.picture import pages
 
         root = jobs[0].model.root
-        drawn = [*(page for job in jobs for page in pages(job)), *_pages_of_list(jobs)]
+        drawn = [page for job in jobs for page in pages(job)]
+        if "list" in jobs[0].options.show:
+            from aidl_lang.export.sheets import pages as pages_of_list
+
+            drawn += pages_of_list(jobs)
         return rendered(drawn, suffix, jobs[0].options, (root.doc or root.path).partition("\n")[0])
 
     return write
@@ -237,7 +202,13 @@ def _writer(module: str, name: str) -> Callable[[Any], Exported]:
 
 def _each(module: str, name: str) -> Callable[[Sequence[Job]], Exported]:
     """Returns the writer of a format that has a file for each sheet."""
-    return lambda jobs: _files([*map(_writer(module, name), jobs)])
+
+    def write(jobs: Sequence[Job]) -> Exported:
+        first, *others = map(_writer(module, name), jobs)
+        notes = tuple(note for made in (first, *others) for note in made.notes)
+        return Exported(first.data, tuple(made.data for made in others), notes)
+
+    return write
 
 
 FORMATS: dict[str, Format] = {
@@ -245,11 +216,11 @@ FORMATS: dict[str, Format] = {
     ".pdf": Format(_pictures(".pdf"), "PDF, true to scale", cuts=True, tiles=True),
     ".png": Format(_pictures(".png"), "PNG picture", cuts=True, tiles=True),
     ".dxf": Format(_each("dxf", "to_dxf"), "DXF for cutters", cuts=True, inches=True),
-    ".csv": Format(_writer("cut_list", "to_csv"), cuts=True),
-    ".step": Format(_each("step", "to_step"), "STEP solid", "OCP", "step"),
-    ".stp": Format(_each("step", "to_step"), needs="OCP", extra="step"),
+    ".csv": Format(_writer("sheets", "to_csv"), cuts=True),
+    ".step": Format(_each("step", "to_step"), "STEP solid", ("OCP", "step")),
+    ".stp": Format(_each("step", "to_step"), needs=("OCP", "step")),
     ".stl": Format(_each("mesh", "to_stl"), "STL mesh"),
-    ".3mf": Format(_each("mesh", "to_3mf"), "3MF for printers", "lib3mf", "3mf"),
+    ".3mf": Format(_each("mesh", "to_3mf"), "3MF for printers", ("lib3mf", "3mf")),
     ".json": Format(_json),
 }
 

@@ -13,7 +13,8 @@ import numpy as np
 
 from aidl_lang.common.prose import significant
 from aidl_lang.common.records import record
-from aidl_lang.export.profiles import ENGRAVE, FILL, INNER, OUTER, PLAIN, Profile
+from aidl_lang.export.marks import Area, Curves, Group, Ink, Mark
+from aidl_lang.export.profiles import CUTS, ENGRAVE, FILL, INNER, OUTER, PLAIN, Profile
 from aidl_lang.geometry.boolean import united
 from aidl_lang.geometry.curves import (
     Piece,
@@ -121,13 +122,9 @@ def outlines(model: SolvedModel, drawing: Drawing, profile: Profile = PLAIN) -> 
 
 def unfilled(drawing: Drawing, profile: Profile) -> list[str]:
     """Returns the paths of drawings that are to be engraved as areas and have lines that enclose none."""
-    return list(
-        dict.fromkeys(
-            outline.path
-            for outline in _lines(drawing, profile)
-            if outline.operation == ENGRAVE and profile.operation(outline.style.layer, ENGRAVE) == FILL
-        )
-    )
+    lines = (line for line in _lines(drawing, profile) if line.operation == ENGRAVE)
+    unlike = (line.path for line in lines if profile.operation(line.style.layer, ENGRAVE) == FILL)
+    return list(dict.fromkeys(unlike))
 
 
 def _lines(drawing: Drawing, profile: Profile) -> Iterator[Outline]:
@@ -176,13 +173,13 @@ def _apart(found: Sequence[Outline], profile: Profile) -> Iterator[Outline]:
         if len(together) < 2:
             yield from area if together else ()
             continue
-        for loop in united(*map(_region, together)).loops:
+        for loop in united(*(Region((_face(each),)) for each in together)).loops:
             yield replace(area[0], pieces=loop.pieces, clockwise=loop.reversed)
 
 
-def _region(area: Sequence[Outline]) -> Region:
+def _face(area: Iterable[Outline]) -> Face:
     first, *others = (outline.loop for outline in area)
-    return Region((Face(first, tuple(others)),))
+    return Face(first, tuple(others))
 
 
 def _bounding(stroke: Stroke, operation: str, profile: Profile, tolerance: float) -> list[Loop]:
@@ -271,7 +268,7 @@ class _HoleEdges:
             for piece in loop.pieces
         ]
         self._same: dict[Piece, list[str]] = defaultdict(list)
-        for path, piece in self._edges:
+        for path, piece in reversed(self._edges):  # inner ones first
             for either in (piece, reverse(piece)):
                 self._same[either].append(path)
         boxes = np.array([bounds(piece) for _, piece in self._edges]).reshape(-1, 4)
@@ -281,15 +278,11 @@ class _HoleEdges:
         """Returns the hole that shares an edge with a loop of a body: of several, as where a pin goes through
         parts that lie on each other, the innermost in the body.
         """
-        for found in (self._same_edge, self._beside):  # a piece may have been drawn anew in the loop
-            paths = [path for piece in loop.pieces for path in found(piece)]
+        for found in (self._same.get, self._beside):  # a piece may have been drawn anew in the loop
+            paths = [path for piece in loop.pieces for path in found(piece) or ()]
             if paths:
                 return max(paths, key=lambda path: path.startswith(f"{body}."))
         return None
-
-    def _same_edge(self, piece: Piece) -> Iterable[str]:
-        """Returns the holes with this very edge, inner ones first."""
-        return reversed(self._same.get(piece, []))
 
     def _beside(self, piece: Piece) -> Iterable[str]:
         """Returns the holes on whose edges the middle of a piece lies, inner ones first."""
@@ -297,3 +290,41 @@ class _HoleEdges:
         near = np.flatnonzero(((self._low <= p) & (p <= self._high)).all(axis=1))
         found = (self._edges[k] for k in reversed(near))
         return [path for path, edge in found if locate(edge, p, self._tolerance) is not None]
+
+
+# --- What a cutter follows, as marks of a picture: outlines and engraved areas in the order of a profile.
+
+
+def followed_groups(model: SolvedModel, drawing: Drawing, profile: Profile) -> Iterator[Group]:
+    """Yields a group for each run of outlines with one operation and one structure."""
+    kinds = {s.path: s.kind for s in model.root.walk()}
+    found = [outline for outline in outlines(model, drawing, profile) if outline.operation]
+    used: dict[str, int] = {}
+
+    def look(outline: Outline) -> tuple[str, str, str | None]:
+        own = outline.style.layer
+        return outline.path, outline.operation, profile.look(own, outline.operation).layer or own
+
+    for (path, operation, layer), run in groupby(found, key=look):
+        name = f"{path}:{operation}"
+        used[name] = count = used.get(name, 0) + 1
+        attributes = {"data-kind": kinds[path], "data-path": path, "data-operation": operation}
+        if layer is not None:
+            attributes["data-layer"] = layer
+        yield Group(name if count == 1 else f"{name}-{count}", tuple(_marks(list(run), profile)), attributes)
+
+
+def _marks(run: Sequence[Outline], profile: Profile) -> Iterator[Mark]:
+    for area, bounding in groupby(run, key=lambda o: o.area):
+        if area:
+            together = list(bounding)
+            yield Area(_face(together), profile.color(together[0]), None, FILL)
+            continue
+        for outline in bounding:
+            width = profile.look(outline.style.layer, outline.operation).width
+            ink = Ink(profile.color(outline), width)
+            role = "cut" if outline.operation in CUTS else outline.operation
+            if outline.closed:
+                yield Area(Face(outline.loop), None, ink, role)
+            else:
+                yield Curves(outline.pieces, ink, role)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
-from functools import cached_property
 from itertools import pairwise
 from typing import TypeAlias
 
@@ -15,8 +14,7 @@ from numpy.typing import NDArray
 from aidl_lang.common.prose import fixed
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
-from aidl_lang.export import themes
-from aidl_lang.export.marks import Area, Curves, Ink, Mark, Text, polygon
+from aidl_lang.export.marks import DIMENSION, Area, Block, Curves, Ink, Mark, Text, arrowhead
 from aidl_lang.geometry.curves import Arc, Bounds, Circle, Line, Piece, Vec, ends, point, points, union_bounds
 from aidl_lang.geometry.dimensions.features import dot
 from aidl_lang.geometry.drawing import Drawing
@@ -52,48 +50,6 @@ class PlacedDimension:
 
 
 @record()
-class Block:
-    """A rectangle turned by `angle` degrees about `at`; `sides` in its own frame."""
-
-    at: Vec
-    angle: float
-    sides: Bounds
-
-    @cached_property
-    def axes(self) -> tuple[Vec, Vec]:
-        c, s = math.cos(math.radians(self.angle)), math.sin(math.radians(self.angle))
-        return (c, s), (-s, c)
-
-    @cached_property
-    def corners(self) -> tuple[Vec, ...]:
-        (c, s), _ = self.axes
-        left, bottom, right, top = self.sides
-        at = ((left, bottom), (right, bottom), (right, top), (left, top))
-        return tuple((self.at[0] + c * x - s * y, self.at[1] + s * x + c * y) for x, y in at)
-
-    @cached_property
-    def box(self) -> Bounds:
-        xs, ys = zip(*self.corners, strict=True)
-        return min(xs), min(ys), max(xs), max(ys)
-
-    def overlaps(self, other: Block) -> bool:
-        """Tells whether two rectangles overlap: no side of one has the other beyond it."""
-        a, b = self.box, other.box
-        if a[0] >= b[2] or b[0] >= a[2] or a[1] >= b[3] or b[1] >= a[3]:
-            return False
-        for axis in (*self.axes, *other.axes):
-            (low, high), (first, last) = (_range(block.corners, axis) for block in (self, other))
-            if high <= first or last <= low:
-                return False
-        return True
-
-
-def _range(points: tuple[Vec, ...], axis: Vec) -> tuple[float, float]:
-    along = [dot(p, axis) for p in points]
-    return min(along), max(along)
-
-
-@record()
 class Pen:
     """The scale of the marks. `mm`: a millimetre on paper in units of the drawing."""
 
@@ -116,21 +72,11 @@ class Pen:
         half = HEAD_WIDTH / 2 * self.mm
         return Block(tip, math.degrees(math.atan2(v, u)), (-HEAD * self.mm, -half, 0.0, half))
 
-    def _triangle(self, tip: Vec, way: Vec) -> tuple[Vec, Vec, Vec]:
-        """Returns an arrowhead that points along `way`."""
-        (x, y), (u, v) = tip, way
-        back, half = HEAD * self.mm, HEAD_WIDTH / 2 * self.mm
-        return (
-            tip,
-            (x - back * u - half * v, y - back * v + half * u),
-            (x - back * u + half * v, y - back * v - half * u),
-        )
-
     def text(self, words: str, middle: Vec, angle: float = 0.0) -> Text:
-        return Text(middle, words, self.font, themes.DIMENSION, "middle", angle=angle)
+        return Text(middle, words, self.font, DIMENSION, "middle", angle=angle)
 
     def marks(self, placed: PlacedDimension) -> Iterator[Mark]:
-        ink = Ink(themes.DIMENSION, LINE * self.mm)
+        ink = Ink(DIMENSION, LINE * self.mm)
         for role, segments in (("extension", placed.extensions), ("dimension", placed.lines)):
             if segments:
                 yield Curves(tuple(Line(*s) for s in segments), ink, role)
@@ -142,7 +88,8 @@ class Pen:
         if placed.arc is not None:
             yield Curves((placed.arc,), ink, "dimension")
         for head in placed.heads:
-            yield Area(polygon(*self._triangle(*head)), themes.DIMENSION, None, "arrow")
+            face = arrowhead(*head, HEAD * self.mm, HEAD_WIDTH * self.mm)
+            yield Area(face, DIMENSION, None, "arrow")
         yield placed.text
 
     def box_of(self, placed: PlacedDimension) -> Bounds:
@@ -263,11 +210,6 @@ def _tolerance(of: Dimension) -> str:
 
 def _signed(value: float) -> str:
     return f"{'+' if value > 0 else ''}{fixed(value, 4)}"
-
-
-def arc_segments(arc: Arc) -> list[Segment]:
-    spots = [point(arc, k / 12) for k in range(13)]
-    return list(pairwise(spots))
 
 
 # --- The marks on a sheet so far, and what a further dimension would cover or cross.
@@ -475,7 +417,9 @@ def _chords(pieces: Sequence[Piece]) -> Segments:
 
 
 def _all_lines(placed: PlacedDimension) -> list[Segment]:
-    return [*placed.lines, *(arc_segments(placed.arc) if placed.arc is not None else ())]
+    if placed.arc is None:
+        return [*placed.lines]
+    return [*placed.lines, *pairwise(point(placed.arc, k / 12) for k in range(13))]
 
 
 def _array(segments: Sequence[Segment]) -> Segments:

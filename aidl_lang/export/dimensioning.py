@@ -12,9 +12,8 @@ from dataclasses import field, replace
 
 from aidl_lang.common.prose import counted
 from aidl_lang.common.records import record
-from aidl_lang.export import themes
 from aidl_lang.export.dimension_marks import HEIGHT, Pen, PlacedDimension, Sheet, broken, words_of
-from aidl_lang.export.marks import Group, Text
+from aidl_lang.export.marks import DIMENSION, Group, Text
 from aidl_lang.geometry.curves import Arc, Bounds, Circle, Vec, bounds, larger_side, point, union_bounds
 from aidl_lang.geometry.dimensions import dimensions
 from aidl_lang.geometry.dimensions.features import X_AXIS, Y_AXIS, is_clipped
@@ -38,7 +37,7 @@ _TURNS = tuple(a + b for a in (0, 90, 180, 270) for b in (45, 60, 30, 75, 15))
 
 def dimensioned(model: SolvedModel, drawing: Drawing, box: Bounds) -> tuple[Bounds, tuple[Group, ...]]:
     """Returns the box of `box` and all dimensions, and marks for each, sized to be read in the whole."""
-    wanted = visible(dimensions(model, drawing), model, Sheet(drawing, Pen(0.005 * drawing.size)))
+    wanted = visible(model, drawing)
     size = larger_side(box)
     if not wanted or not size > 0:
         return box, ()
@@ -82,10 +81,16 @@ def dimensioned_to_scale(
     return whole, (*groups, *more), left
 
 
-def visible(
-    wanted: Sequence[tuple[Dimension, ...]], model: SolvedModel, sheet: Sheet
-) -> list[tuple[Dimension, ...]]:
-    """Drops dimensions that end where nothing is drawn, in a hole beyond what it cuts or clipped away."""
+def seen_on(drawing: Drawing) -> Sheet:
+    """Returns a sheet that tells what can be seen of a drawing."""
+    return Sheet(drawing, Pen(0.005 * drawing.size))
+
+
+def visible(model: SolvedModel, drawing: Drawing) -> list[tuple[Dimension, ...]]:
+    """Returns the dimensions, without those that end where nothing is drawn: in a hole beyond what it cuts,
+    or clipped away.
+    """
+    wanted, sheet = dimensions(model, drawing), seen_on(drawing)
     stay = ("hand", "overall") if is_clipped(model.root) else ("hand", "overall", "constraint")
     centers = {d.curve.center for group in wanted for d in group if isinstance(d, Roundness)}
 
@@ -133,7 +138,9 @@ class _Layout:
         boxes = [self.box, *map(self.pen.box_of, placed.values())]
         groups = [self._group(n, wanted[i], placed[i]) for n, i in enumerate(sorted(placed), 1)]
         if self.remarks and (left := len(wanted) - len(placed)):
-            note = self._remark(left, union_bounds(boxes))
+            (x, y, *_), size = union_bounds(boxes), 0.8 * self.pen.font
+            words = f"{counted(left, 'more dimension')} not shown"
+            note = Text((x, y - 1.6 * size), words, size, DIMENSION)
             groups.append(Group("dimensions-left-out", (note,), {"class": "dimension"}))
             boxes.append(note.box)
         return union_bounds(boxes), tuple(groups)
@@ -155,18 +162,11 @@ class _Layout:
             f"dimension-{number}", tuple(self.pen.marks(replace(placed, extensions=lines))), attributes
         )
 
-    def _remark(self, left: int, box: Bounds) -> Text:
-        words = f"{counted(left, 'more dimension')} not shown"
-        size = 0.8 * self.pen.font
-        return Text((box[0], box[1] - 1.6 * size), words, size, themes.DIMENSION)
-
     def point(self, callout: Callout) -> PlacedDimension | None:
         """Places a callout, if there is room for it."""
+        pen = self.pen
         candidates = (
-            (
-                reach / 8 + 0.01 * rank,
-                self.pen.leader(tip, way, reach * self.pen.mm, way[0] >= 0, callout.word),
-            )
+            (reach / 8 + 0.01 * rank, pen.leader(tip, way, reach * pen.mm, way[0] >= 0, callout.word))
             for rank, (tip, way) in enumerate(callout.spots)
             for reach in _REACHES
         )
@@ -317,13 +317,8 @@ class _Layout:
                             continue
                         out = way if outward else (-way[0], -way[1])
                         placed = self.pen.leader(tip, out, reach * mm, out[0] >= 0, words)
-                        cost = (
-                            reach / 8
-                            + 0.1 * (rank % 7 if isinstance(curve, Arc) else rank % 5)
-                            + hidden
-                            + 0.6 * (not outward)
-                        )
-                        yield cost, placed
+                        turned = 0.1 * (rank % 7 if isinstance(curve, Arc) else rank % 5)
+                        yield reach / 8 + turned + hidden + 0.6 * (not outward), placed
 
 
 def _turn(of: Dimension) -> tuple[int, float]:

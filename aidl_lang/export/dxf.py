@@ -11,7 +11,7 @@ from typing import Any
 from aidl_lang.common.colors import rgb
 from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.drawings.dxf import ENGRAVED
-from aidl_lang.common.prose import fixed
+from aidl_lang.common.prose import fixed, shortened
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
 from aidl_lang.common.source import Span
@@ -19,7 +19,7 @@ from aidl_lang.export.cuts import Outline, outlines
 from aidl_lang.export.job import UNITS, Exported, Job
 from aidl_lang.export.marks import Text
 from aidl_lang.export.overlay import labels
-from aidl_lang.export.profiles import FILL, ON_PARTS, PLAIN, SCORE, Look, Profile
+from aidl_lang.export.profiles import FILL, ON_PARTS, PLAIN, SCORE, Look
 from aidl_lang.geometry.arcs import as_arcs
 from aidl_lang.geometry.curves import (
     TAU,
@@ -37,7 +37,6 @@ from aidl_lang.geometry.curves import (
     round_range,
 )
 from aidl_lang.geometry.drawing import Drawing
-from aidl_lang.geometry.solved import SolvedModel
 from aidl_lang.geometry.styles import Style
 
 # --- The lines of a DXF: weights that it knows, and a linetype for each pattern of dashes.
@@ -52,39 +51,6 @@ DASHED = "DASHED"
 def weight(width: float) -> int:
     """Returns the weight nearest to a width, mm."""
     return min(WEIGHTS, key=lambda known: abs(known - 100 * width))
-
-
-class Lines:
-    """The linetypes in use, each made on first use. `size` is that of the drawing, mm; `is_old`: R12 knows no
-    weights, and no points in names. Patterns are in `units`.
-    """
-
-    def __init__(self, document: Any, size: float, is_old: bool = False, units: str = "mm") -> None:
-        self._units = units
-        self._is_old = is_old
-        self._document = document
-        self._size = size
-
-    def attributes(self, style: Style) -> dict[str, Any]:
-        """Returns the attributes of entities with lines of a style; none where it asks for nothing."""
-        found: dict[str, Any] = {}
-        if style.width is not None and not self._is_old:
-            found["lineweight"] = weight(style.width)
-        if (dashes := style.dashes(self._size)) is not None:
-            found["linetype"] = self._linetype(dashes, is_named=bool(style.dash))
-        return found
-
-    def _linetype(self, dashes: tuple[float, ...], *, is_named: bool) -> str:
-        """Returns the name of a pattern; the one that goes by the size of the drawing is just dashed."""
-        name = "_".join((DASHED, *map(fixed, dashes))) if is_named else DASHED
-        if self._is_old:
-            name = name.replace(".", "_")
-        if name not in self._document.linetypes:
-            parts = [part / UNITS[self._units] for part in dashes]
-            pattern = [-part if k % 2 else part for k, part in enumerate(parts)]
-            said = f"dashes and gaps in {self._units}"
-            self._document.linetypes.add(name, [sum(parts), *pattern], description=said)
-        return name
 
 
 # --- Layers of a DXF: names that it can hold, and a colour for each.
@@ -126,20 +92,53 @@ def color_attributes(color: str, is_old: bool) -> dict[str, int]:
     return {"color": nearest} if is_old else {"true_color": red << 16 | green << 8 | blue}
 
 
-class Layers:
-    """The layers in use. DXF ignores case in names, so one of two that differ only in case is changed."""
+class Looks:
+    """The layers and the linetypes in use, each made on first use. DXF ignores case in names, so one of two
+    that differ only in case is changed. R12 (`is_old`) knows no weights, and no points in names.
+    """
 
-    def __init__(self, document: Any, model: SolvedModel, is_old: bool = False) -> None:
-        self.is_old = is_old
+    def __init__(self, document: Any, job: Job, is_old: bool) -> None:
+        self._document, self._job, self._is_old = document, job, is_old
         self._rules = _OLD if is_old else _NEW
-        self.notes: list[Diagnostic] = []
-        self._document = document
-        self._root = model.root
         self._names: dict[str, str] = {}
         self._taken = {_NEVER_PLOTTED, *OWN}
-        self.colors: dict[str, str] = {}
+        self._colors: dict[str, str] = {}
+        self.notes: list[Diagnostic] = []
 
-    def name(self, wanted: str, look: Look | None = None) -> str:
+    def of(self, outline: Outline) -> dict[str, Any]:
+        """Returns the layer of an outline and its looks; for a cutter a colour that is not the layer's."""
+        profile, style = self._job.options.followed, outline.style
+        if profile is None:
+            found = {"layer": self.layer(outline.layer)} | self._line(style)
+            return found if style.color is None else found | color_attributes(style.color, self._is_old)
+        look, color = profile.look(style.layer, outline.operation), profile.color(outline)
+        name = self.layer(look.layer or outline.layer, look)
+        own = {} if self._colors.get(name) == color else color_attributes(color, self._is_old)
+        return {"layer": name} | own
+
+    def _line(self, style: Style) -> dict[str, Any]:
+        """Returns the attributes of lines of a style; none where it asks for nothing."""
+        found: dict[str, Any] = {}
+        if style.width is not None and not self._is_old:
+            found["lineweight"] = weight(style.width)
+        if (dashes := style.dashes(self._job.drawing.size)) is not None:
+            found["linetype"] = self._linetype(dashes, is_named=bool(style.dash))
+        return found
+
+    def _linetype(self, dashes: tuple[float, ...], *, is_named: bool) -> str:
+        """Returns the name of a pattern; the one that goes by the size of the drawing is just dashed."""
+        name = "_".join((DASHED, *map(fixed, dashes))) if is_named else DASHED
+        if self._is_old:
+            name = name.replace(".", "_")
+        if name not in self._document.linetypes:
+            units = self._job.options.units
+            parts = [part / UNITS[units] for part in dashes]
+            pattern = [-part if k % 2 else part for k, part in enumerate(parts)]
+            said = f"dashes and gaps in {units}"
+            self._document.linetypes.add(name, [sum(parts), *pattern], description=said)
+        return name
+
+    def layer(self, wanted: str, look: Look | None = None) -> str:
         """Returns the document's name for a layer of the program, which is made on first use, with a look."""
         if wanted not in self._names:
             self._names[wanted] = name = wanted if wanted in OWN else self._free(wanted)
@@ -148,13 +147,13 @@ class Layers:
                 color = OWN.get(name) or FURTHER[own % len(FURTHER)]
                 self._document.layers.add(name, **({"color": color} if look is None else self._like(look)))
             if look is not None:
-                self.colors[name] = look.color
+                self._colors[name] = look.color
         return self._names[wanted]
 
     def _like(self, look: Look) -> dict[str, int]:
         """Returns the attributes of a layer; programs that know no true colours take that of the index."""
         index = color_attributes(look.color, is_old=True)
-        if self.is_old:
+        if self._is_old:
             return index
         return index | color_attributes(look.color, is_old=False) | {"lineweight": weight(look.width)}
 
@@ -168,21 +167,14 @@ class Layers:
             name = f"{allowed[: longest - len(str(count)) - 1]}_{count}"
         self._taken.add(name.casefold())
         if name != wanted:
-            self.notes.append(self._changed_note(wanted, name, taken=count > 1))
+            message = f"the layer `{shortened(wanted, 60)}` is called `{shortened(name, 60)}` in the DXF"
+            why = _ALIKE if count > 1 else self._rules.rule
+            self.notes.append(Diagnostic("W0720", message, self._place(wanted), hints=(why,)))
         return name
 
     def _place(self, layer: str) -> Span | None:
-        found = (s.span for s in self._root.walk() if str((*s.attributes.get("layer", ()), "")[0]) == layer)
-        return next(found, None)
-
-    def _changed_note(self, wanted: str, name: str, taken: bool) -> Diagnostic:
-        why = _ALIKE if taken else self._rules.rule
-        message = f"the layer `{_short(wanted)}` is called `{_short(name)}` in the DXF"
-        return Diagnostic("W0720", message, self._place(wanted), hints=(why,))
-
-
-def _short(name: str) -> str:
-    return name if len(name) <= 60 else f"{name[:59]}…"
+        said = ((s.attributes.get("layer"), s.span) for s in self._job.model.root.walk())
+        return next((span for values, span in said if values and str(values[0]) == layer), None)
 
 
 # Each outline is one entity: a circle, or a polyline of lines and arcs, closed if the outline is. Curves of
@@ -190,7 +182,7 @@ def _short(name: str) -> str:
 # clockwise. On request the file is one of R12, which says the same in older words; or it is exact, and an
 # outline with other curves in it has an entity for each piece.
 #
-# The order is that of `cuts`, the layers those of `dxf_layers`, the lines those of `dxf_lines`.
+# The order is that of `cuts`.
 #
 # Each entity carries the path of its body as XDATA of the application AIDL, and that of the hole it comes
 # from as XDATA of AIDL_HOLE; what is engraved has the operation and its layer as XDATA of AIDL_ENGRAVED. A
@@ -245,86 +237,55 @@ def _written(document: Any, job: Job, is_old: bool) -> Exported:
         document.header["$MEASUREMENT"] = MEASUREMENT[job.options.units]
     tolerance = None if job.options.dxf == "splines" else job.options.tolerance
     entities = _Entities(document.modelspace(), job.drawing, tolerance, is_old)
-    layers, lines = (
-        Layers(document, job.model, is_old),
-        Lines(document, job.drawing.size, is_old, job.options.units),
-    )
+    looks = Looks(document, job, is_old)
     for outline in found:
         checkpoint()
-        if profile is not None:
-            attributes = _followed(outline, profile, layers)
-        else:
-            attributes = {"layer": layers.name(outline.layer)} | lines.attributes(outline.style)
-            if outline.style.color is not None:
-                attributes |= color_attributes(outline.style.color, is_old)
         names = [(BODY, outline.path)] + ([(HOLE, outline.hole)] if outline.hole else [])
         said = [outline.operation, outline.style.layer or ""] if outline.operation in ON_PARTS else []
         if outline.operation in (FILL, SCORE) and not outline.style.layer:
             said[1] = outline.operation
-        for entity in entities.add(outline, attributes):
+        for entity in entities.add(outline, looks.of(outline)):
             if said:
                 entity.set_xdata(ENGRAVED, [(1000, text[: TEXT_BYTES // ESCAPED]) for text in said])
             for application, path in names:
                 entity.set_xdata(application, [(1000, text) for text in _split(path)])
-    _add_labels(document, labels(job), layers)
-    factor = _scaled(document, job.options.units)
+    _add_labels(document, labels(job), looks)
+    factor = 1 / UNITS[job.options.units]
+    if factor != 1:  # it was drawn in mm
+        from ezdxf import transform
+
+        transform.scale_uniform(document.modelspace(), factor)
     if found:
         _set_view(document, job.drawing, factor)
-    _order_classes(document)
-    text = io.StringIO()
-    document.write(text)
-    data = text.getvalue().encode(document.output_encoding, errors="dxfreplace")
-    return Exported(data, notes=tuple(layers.notes))
-
-
-def _scaled(document: Any, units: str) -> float:
-    """Multiplies what was drawn in mm so that it is in `units`, and returns the factor."""
-    from ezdxf import transform
-
-    factor = 1 / UNITS[units]
-    if factor != 1:
-        transform.scale_uniform(document.modelspace(), factor)
-    return factor
-
-
-def _followed(outline: Outline, profile: Profile, layers: Layers) -> dict[str, Any]:
-    """Returns the layer of an outline for a cutter, and its colour where that is not the layer's."""
-    look, color = profile.look(outline.style.layer, outline.operation), profile.color(outline)
-    name = layers.name(look.layer or outline.layer, look)
-    own = {} if layers.colors.get(name) == color else color_attributes(color, layers.is_old)
-    return {"layer": name} | own
-
-
-def _add_labels(document: Any, texts: Iterable[Text], layers: Layers) -> None:
-    """Adds texts on a layer of their own, which is not plotted: a machine leaves it out."""
-    from ezdxf.enums import TextEntityAlignment
-
-    for text in texts:
-        layer = layers.name(LABELS, Look(GREY))
-        document.layers.get(layer).dxf.plot = 0
-        made = document.modelspace().add_text(
-            text.text, height=CAPITAL * text.size, dxfattribs={"layer": layer}
-        )
-        made.set_placement(text.at, align=TextEntityAlignment.CENTER)
-
-
-def _order_classes(document: Any) -> None:
-    """Orders the registered classes: the library goes through a set, in another order in each process."""
+    # The library goes through a set of classes, in another order in each process.
     document.classes.add_required_classes(document.dxfversion)
     classes = document.classes.classes
     for key in sorted(classes):
         classes.move_to_end(key)
+    text = io.StringIO()
+    document.write(text)
+    return Exported(document.encode(text.getvalue()), notes=tuple(looks.notes))
+
+
+def _add_labels(document: Any, texts: Iterable[Text], looks: Looks) -> None:
+    """Adds texts on a layer of their own, which is not plotted: a machine leaves it out."""
+    from ezdxf.enums import TextEntityAlignment
+
+    for text in texts:
+        layer = looks.layer(LABELS, Look(GREY))
+        document.layers.get(layer).dxf.plot = 0
+        looked = {"layer": layer}
+        made = document.modelspace().add_text(text.text, height=CAPITAL * text.size, dxfattribs=looked)
+        made.set_placement(text.at, align=TextEntityAlignment.CENTER)
 
 
 def _set_view(document: Any, drawing: Drawing, factor: float) -> None:
     """Sets extents, limits and a first view that show the drawing with its lengths multiplied."""
     left, bottom, right, top = (factor * side for side in drawing.box)
     space = document.modelspace()
-    space.dxf.extmin, space.dxf.extmax = (left, bottom, 0.0), (right, top, 0.0)
     space.dxf.limmin, space.dxf.limmax = (left, bottom), (right, top)
-    for name, p in (("EXTMIN", (left, bottom, 0.0)), ("EXTMAX", (right, top, 0.0))):
-        document.header[f"${name}"] = p
-    document.header["$LIMMIN"], document.header["$LIMMAX"] = (left, bottom), (right, top)
+    space.dxf.extmin = document.header["$EXTMIN"] = (left, bottom, 0.0)
+    space.dxf.extmax = document.header["$EXTMAX"] = (right, top, 0.0)
     document.set_modelspace_vport(1.1 * factor * drawing.size, ((left + right) / 2, (bottom + top) / 2))
 
 

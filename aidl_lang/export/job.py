@@ -20,8 +20,8 @@ from aidl_lang.geometry.drawing import Drawing
 from aidl_lang.geometry.solved import SolvedModel
 
 if TYPE_CHECKING:
-    from aidl_lang.export.cut_list import CutList, Item
     from aidl_lang.export.profiles import Profile
+    from aidl_lang.export.sheets import CutList, Item
 
 
 DXF = ("arcs", "r12", "splines")
@@ -118,7 +118,7 @@ class Job:
     @cached_property
     def cut_list(self) -> CutList:
         """The parts of the whole drawing, those that are equal together, each with its number."""
-        from aidl_lang.export.cut_list import cut_list
+        from aidl_lang.export.sheets import cut_list
 
         return cut_list(self) if self.whole is None else self.whole.cut_list
 
@@ -130,6 +130,11 @@ class Exported:
     data: bytes
     further: tuple[bytes, ...] = ()
     notes: tuple[Diagnostic, ...] = ()
+
+    def files(self, name: str) -> list[tuple[str, bytes]]:
+        """Returns the contents by the names of their files."""
+        contents = (self.data, *self.further)
+        return list(zip(file_names(name, len(contents)), contents, strict=True))
 
 
 class ExportError(AidlError):
@@ -173,20 +178,12 @@ def is_pattern(name: str) -> bool:
     words = _WORD.findall(name)
     for word in words:
         if word not in WORDS:
-            raise ExportError(
-                "E0926",
-                f"`{{{word}}}` in `{name}` stands for nothing",
-                *(
-                    did_you_mean(_braced(nearest(word, WORDS)))
-                    or [f"there are {listed(ticked(_braced(WORDS)))}"]
-                ),
-            )
+            near = did_you_mean(_braced(nearest(word, WORDS)))
+            hints = near or [f"there are {listed(ticked(_braced(WORDS)))}"]
+            raise ExportError("E0926", f"`{{{word}}}` in `{name}` stands for nothing", *hints)
     if words and not set(words) & set(_TELLING):
-        raise ExportError(
-            "E0926",
-            f"`{name}` is one name for several parts",
-            "name them apart: with `{part}`, or with `{number}`",
-        )
+        message = f"`{name}` is one name for several parts"
+        raise ExportError("E0926", message, "name them apart: with `{part}`, or with `{number}`")
     return bool(words)
 
 
@@ -208,8 +205,7 @@ def contents(
     """Returns all files of an output by name, and diagnostics about them. Raises as `writing` does."""
     if not is_pattern(name):
         made = writing(suffix)
-        datas = (made.data, *made.further)
-        return list(zip(file_names(name, len(datas)), datas, strict=True)), made.notes
+        return made.files(name), made.notes
     parts = writing.parts(suffix)
     items = [item for item, _ in parts]
     names, notes = names_of_parts(name, items)
@@ -217,11 +213,12 @@ def contents(
         f"`{PurePath(n).stem}` ×{i.quantity}" for n, i in zip(names, items, strict=True) if i.quantity > 1
     ]
     if several and "quantity" not in _WORD.findall(name):
-        notes.append(_several_note(several))
+        message = f"a file has one piece, and several are to be cut: {listed(several, 8)}"
+        hint = "`{quantity}` in the name of an output says how many: `{number}-{part}-x{quantity}`"
+        notes.append(Diagnostic("N0759", message, hints=(hint,)))
     files = []
     for own, (_, made) in zip(names, parts, strict=True):
-        datas = (made.data, *made.further)
-        files += list(zip(file_names(own, len(datas)), datas, strict=True))
+        files += made.files(own)
         notes += made.notes
     return files, tuple(dict.fromkeys(notes))
 
@@ -241,7 +238,10 @@ def names_of_parts(pattern: str, items: Sequence[Item]) -> tuple[list[str], list
         names.append(str(path))
         if count > 1:
             changed.append(str(path))
-    return names, [_changed_note(pattern, changed)] if changed else []
+    are = "is" if len(changed) == 1 else "are"
+    message = f"`{pattern}` gives several parts one name: {listed(ticked(changed), 4)} {are} numbered"
+    hint = "`{number}` tells them apart: `{number}-{part}`"
+    return names, [Diagnostic("W0758", message, hints=(hint,))] if changed else []
 
 
 def _filled(pattern: str, item: Item) -> str:
@@ -258,20 +258,3 @@ def _safe(text: str) -> str:
     """Returns a text as a name that every file system takes for a plain file."""
     name = _REFUSED.sub("-", text)[:_LONGEST].strip("-. ") or "part"
     return f"{name}_" if _RESERVED.fullmatch(name) else name
-
-
-def _changed_note(pattern: str, changed: Sequence[str]) -> Diagnostic:
-    return Diagnostic(
-        "W0758",
-        f"`{pattern}` gives several parts one name: {listed(ticked(changed), 4)} "
-        f"{'is' if len(changed) == 1 else 'are'} numbered",
-        hints=("`{number}` tells them apart: `{number}-{part}`",),
-    )
-
-
-def _several_note(several: Sequence[str]) -> Diagnostic:
-    return Diagnostic(
-        "N0759",
-        f"a file has one piece, and several are to be cut: {listed(several, 8)}",
-        hints=("`{quantity}` in the name of an output says how many: `{number}-{part}-x{quantity}`",),
-    )

@@ -14,6 +14,7 @@ from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.prose import rounded
 from aidl_lang.common.render.terminal import to_dict as diagnostic_dict
 from aidl_lang.common.running import checkpoint
+from aidl_lang.common.source import Span
 from aidl_lang.geometry.boolean import Contact
 from aidl_lang.geometry.curves import KINDS
 from aidl_lang.geometry.drawing import Drawing
@@ -45,20 +46,14 @@ def to_json(
 ) -> str:
     """Returns the document as text with one member per line, lists of numbers and polygons in one line."""
     document = to_dict(model, drawing, diagnostics, timings)
-    polygons = _cut_out(document)
+    polygons = []
+    for number, region in enumerate(document["regions"].values()):  # each has its number for a while
+        polygons.append(json.dumps(region["geometry"]["coordinates"]))
+        region["geometry"]["coordinates"] = number
     text = json.dumps(document, ensure_ascii=False, indent=1, allow_nan=False)
     # JSON strings hold no line breaks and no quotes, so these patterns are never inside one.
     text = _NUMBERS.sub(lambda match: "".join(match[0].split()).replace(",", ", "), text)
     return _POLYGONS.sub(lambda match: polygons[int(match[0])], text) + "\n"
-
-
-def _cut_out(document: Json) -> list[str]:
-    """Replaces the polygons of regions by their numbers in the list of texts it returns."""
-    polygons = []
-    for region in document["regions"].values():
-        polygons.append(json.dumps(region["geometry"]["coordinates"]))
-        region["geometry"]["coordinates"] = len(polygons) - 1
-    return polygons
 
 
 def to_dict(
@@ -75,14 +70,8 @@ def to_dict(
         "status": model.status,
         "root": _structure(model.root, model.mobility()),
         "constraints": [
-            {
-                "path": c.path,
-                "text": c.text,
-                "line": c.span.line,
-                "column": c.span.column,
-                "residual": c.residual,
-                "satisfied": c.satisfied,
-            }
+            {"path": c.path, "text": c.text, **_place(c.span)}
+            | {"residual": c.residual, "satisfied": c.satisfied}
             | ({"soft": True} if c.soft else {})
             for c in model.constraints
         ],
@@ -107,13 +96,16 @@ def to_dict(
     }
     if model.readings:
         document["readings"] = [
-            {"text": r.span.one_line, "line": r.span.line, "column": r.span.column, "reading": r.text}
-            for r in model.readings
+            {"text": r.span.one_line, **_place(r.span), "reading": r.text} for r in model.readings
         ]
     if timings is not None:
         document["timings"] = dict(timings)
     result: Json = rounded(document)
     return result
+
+
+def _place(span: Span) -> Json:
+    return {"line": span.line, "column": span.column}
 
 
 def _structure(s: SolvedStructure, mobility: Mobility) -> Json:

@@ -17,7 +17,7 @@ from aidl_lang.common.prose import named
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
 from aidl_lang.export.job import Exported, ExportError, Job
-from aidl_lang.export.themes import body_fill
+from aidl_lang.export.marks import body_fill
 from aidl_lang.geometry.curves import LARGEST
 from aidl_lang.geometry.drawing import Body, Stroke
 from aidl_lang.geometry.legibility import owner
@@ -63,7 +63,9 @@ def placed_bodies(job: Job) -> list[PlacedBody]:
     found = []
     for body in job.drawing.bodies:
         thickness = thickness_of(body, job.options.thickness)
-        _require_size(body, thickness)
+        if thickness is not None and not THINNEST <= thickness <= LARGEST:
+            message = f"`{body.path}` cannot be made a solid: it would be {thickness:g} mm thick"
+            raise ExportError("E0918", message, f"a thickness is from {THINNEST:g} to {LARGEST:g} mm")
         _require_place(body.path, stand[body.path])
         recesses = _recesses(job, body, stand[body.path], thickness) if thickness is not None else ()
         found.append(PlacedBody(body, stand[body.path], thickness, tuple(recesses)))
@@ -128,22 +130,11 @@ def thick_bodies(job: Job) -> tuple[list[PlacedBody], tuple[Diagnostic, ...]]:
     return thick, (Diagnostic("W0725", f"{have} and {left_out}", hints=_REMEDIES),)
 
 
-def _require_size(body: Body, thickness: float | None) -> None:
-    if thickness is not None and not THINNEST <= thickness <= LARGEST:
-        raise ExportError(
-            "E0918",
-            f"`{body.path}` cannot be made a solid: it would be {thickness:g} mm thick",
-            f"a thickness is from {THINNEST:g} to {LARGEST:g} mm",
-        )
-
-
 def _require_place(path: str, plane: Plane) -> None:
     if not np.abs(plane.origin).max() <= LARGEST:
-        raise ExportError(
-            "E0918",
-            f"`{path}` cannot be placed in space: it lies further out than {LARGEST:g} mm",
-            "look for an `@elevation` that was written in another unit, or multiplied once too often",
-        )
+        message = f"`{path}` cannot be placed in space: it lies further out than {LARGEST:g} mm"
+        hint = "look for an `@elevation` that was written in another unit, or multiplied once too often"
+        raise ExportError("E0918", message, hint)
 
 
 # --- Triangle meshes of the bodies that have a thickness, and STL: binary for one body, text for several.
@@ -201,11 +192,9 @@ def _mesh(placed: PlacedBody) -> Mesh:
     faces = [[p - center for p in face_polygons(face, tolerance)] for face in body.region.faces]
     made = _extruded(faces, thickness, [_tool(r, thickness, center, tolerance) for r in placed.recesses])
     if made is None:
-        raise ExportError(
-            "E0918",
-            f"`{body.path}` cannot be made a solid of triangles: it is too large or too thin for them",
-            "look for a size that was written in another unit, or shrank to nothing",
-        )
+        message = f"`{body.path}` cannot be made a solid of triangles: it is too large or too thin for them"
+        hint = "look for a size that was written in another unit, or shrank to nothing"
+        raise ExportError("E0918", message, hint)
     motion = placed.plane.placed(thickness)
     flat = np.asarray(made.vert_properties)[:, :3] + (*center, 0.0)
     points = flat @ motion[:, :3].T + motion[:, 3]
@@ -340,11 +329,9 @@ def to_3mf(job: Job) -> Exported:
 
 def _mesh_object(lib3mf: Any, model: Any, mesh: Mesh) -> Any:
     if np.abs(mesh.points).max() >= _LARGEST:
-        raise ExportError(
-            "E0918",
-            f"`{mesh.body.path}` does not fit into 3MF: it reaches further than {_LARGEST:g} mm",
-            "look for a size or position that was written in another unit, or multiplied once too often",
-        )
+        message = f"`{mesh.body.path}` does not fit into 3MF: it reaches further than {_LARGEST:g} mm"
+        hint = "look for a size or position that was written in another unit, or multiplied once too often"
+        raise ExportError("E0918", message, hint)
     thing = model.AddMeshObject()
     thing.SetName(mesh.name)
     thing.SetUUID(_id("object", mesh.body.path))

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
-from aidl_lang.export import themes
+from aidl_lang.export import marks
 from aidl_lang.export.job import Job
 from aidl_lang.export.marks import CHARACTER, Dot, Frame, Mark, Text, widened
 from aidl_lang.geometry.curves import Bounds, Vec, are_near, bounds, union_bounds
@@ -24,8 +24,6 @@ from aidl_lang.geometry.solved import ConstraintReport, SolvedGeometry, SolvedMo
 
 # --- Names and numbers of parts on sheets, each where its part has room for it.
 
-LABELS = frozenset({"names", "numbers"})
-"""What `--show` may ask for of parts on sheets."""
 SIZE = 5.0
 """Largest font size, mm."""
 _BASELINE = 0.3
@@ -38,7 +36,7 @@ _AIR = 0.9
 
 def labels(job: Job) -> Iterator[Text]:
     """Yields a text for each part, as large as it allows, up to what is read easily."""
-    asked = job.options.show & LABELS
+    asked = job.options.show & {"names", "numbers"}
     if not asked or job.options.sheet is None:
         return
     root, numbers = job.model.root.path, job.cut_list.numbers if "numbers" in asked else {}
@@ -48,14 +46,13 @@ def labels(job: Job) -> Iterator[Text]:
         label = " ".join(words)
         middle, size = _room(body.region, _lines_on(body, job.drawing), CHARACTER * len(label))
         at = middle[0], middle[1] - _BASELINE * size
-        yield Text(at, label, size, themes.NAME, "middle", halo=False)
+        yield Text(at, label, size, marks.NAME, "middle", halo=False)
 
 
 def _lines_on(body: Body, drawing: Drawing) -> list[NDArray[np.float64]]:
     """Returns what is engraved about a body, as polylines."""
-    near = (s.pieces for s in drawing.strokes)
-    boxes = ((piece, bounds(piece)) for pieces in near for piece in pieces)
-    return [piece_points(piece, COARSE) for piece, box in boxes if are_near(box, body.box)]
+    pieces = (piece for stroke in drawing.strokes for piece in stroke.pieces)
+    return [piece_points(piece, COARSE) for piece in pieces if are_near(bounds(piece), body.box)]
 
 
 def _room(region: Region, engraved: list[NDArray[np.float64]], width: float) -> tuple[Vec, float]:
@@ -98,7 +95,7 @@ _Thing: TypeAlias = SolvedStructure | SolvedGeometry
 
 
 class Taken:
-    """Boxes of what is on the picture already. Few of many overlap another: those are looked for first."""
+    """Boxes of what is on the picture already."""
 
     def __init__(self) -> None:
         self._boxes = np.empty((64, 4))
@@ -113,8 +110,10 @@ class Taken:
     def overlap(self, box: Bounds) -> float:
         """Returns the area by which a box covers others."""
         left, bottom, right, top = self._boxes[: self._count].T
-        met = (left < box[2]) & (right > box[0]) & (bottom < box[3]) & (top > box[1])
-        return sum(_overlap(box, (a, b, c, d)) for a, b, c, d in self._boxes[: self._count][met].tolist())
+        width = np.minimum(right, box[2]) - np.maximum(left, box[0])
+        height = np.minimum(top, box[3]) - np.maximum(bottom, box[1])
+        covered: list[float] = (width * height)[(width > 0) & (height > 0)].tolist()
+        return sum(covered)
 
 
 @record(frozen=False)
@@ -123,7 +122,6 @@ class Explainer:
 
     model: SolvedModel
     drawing: Drawing
-    box: Bounds
     size: float
     taken: Taken = field(default_factory=Taken)
 
@@ -134,6 +132,11 @@ class Explainer:
     @property
     def hair(self) -> float:
         return 0.0012 * self.size
+
+    def boxes(self) -> Iterator[tuple[SolvedStructure, Bounds]]:
+        for structure in self.model.root.walk():
+            if structure.box is not None:
+                yield structure, structure.box.bounds
 
     def label(self, text: str, around: Bounds, color: str, size: float, bold: bool = False) -> Text:
         """Returns the text at the first free place around and in a box, else where it hides least."""
@@ -157,7 +160,7 @@ def explain(
     layers: dict[str, list[Mark]] = {}
     if not show:
         return box, layers
-    at = Explainer(model, drawing, box, size)
+    at = Explainer(model, drawing, size)
     makers = {"plan": _plans, "bbox": _boxes, "points": _points, "names": _names}
     for name, make in makers.items():
         if name in show:
@@ -167,11 +170,10 @@ def explain(
     corner = (box[0], box[1] - 3 * at.font) if wide else (box[2] + 2 * at.font, box[3] - 0.7 * at.font)
     for name, lists in (("constraints", _constraints), ("dof", _degrees)):
         if name in show:
-            marks = lists(at, corner)
-            layers[name] = marks
-            listed = [m.box[2] for m in marks if isinstance(m, Text) and not m.halo]
+            layers[name] = lists(at, corner)
+            listed = [m.box[2] for m in layers[name] if isinstance(m, Text) and not m.halo]
             corner = (max(listed, default=corner[0]) + 2 * at.font, corner[1])
-    texts = [m.box for marks in layers.values() for m in marks if isinstance(m, Text | Frame)]
+    texts = [m.box for layer in layers.values() for m in layer if isinstance(m, Text | Frame)]
     return union_bounds([box, *texts]), layers
 
 
@@ -190,49 +192,34 @@ def _places(box: Bounds, size: float) -> Iterator[tuple[Vec, str]]:
     yield (left - gap, (top + bottom) / 2 - 0.3 * size), "end"
 
 
-def _overlap(a: Bounds, b: Bounds) -> float:
-    width, height = min(a[2], b[2]) - max(a[0], b[0]), min(a[3], b[3]) - max(a[1], b[1])
-    return width * height if width > 0 and height > 0 else 0.0
-
-
-def _bounds(structure: SolvedStructure) -> Bounds | None:
-    return None if structure.box is None else structure.box.bounds
-
-
 def _names(at: Explainer) -> Iterator[Mark]:
     """Yields names of structures at their boxes, the root's first and bold."""
-    for structure in at.model.root.walk():
-        box = _bounds(structure)
-        if box is not None:
-            small = max(0.5 * at.font, min(at.font, 0.3 * (box[3] - box[1])))
-            yield _name(at, structure, box, small)
+    for structure, box in at.boxes():
+        small = max(0.5 * at.font, min(at.font, 0.3 * (box[3] - box[1])))
+        yield _name(at, structure, box, small)
 
 
 def _name(at: Explainer, structure: SolvedStructure, box: Bounds, size: float) -> Text:
     """Places a name in the upper left corner of a structure without parts if it fits, else around it."""
-    inside = Text((box[0] + 0.35 * size, box[3] - 1.1 * size), structure.name, size, themes.NAME)
+    inside = Text((box[0] + 0.35 * size, box[3] - 1.1 * size), structure.name, size, marks.NAME)
     fits = inside.box[2] < box[2] and box[3] - box[1] > 2.5 * size
     if fits and not structure.structures and not at.taken.overlap(inside.box):
         return at.first_free([inside])
-    return at.label(structure.name, box, themes.NAME, size, bold=structure is at.model.root)
+    return at.label(structure.name, box, marks.NAME, size, bold=structure is at.model.root)
 
 
 def _boxes(at: Explainer) -> Iterator[Mark]:
-    for structure in at.model.root.walk():
-        box = _bounds(structure)
-        if box is not None:
-            yield Frame(box, themes.BOX, at.hair, 4 * at.hair)
+    return (Frame(box, marks.BOX, at.hair, 4 * at.hair) for _, box in at.boxes())
 
 
 def _plans(at: Explainer) -> Iterator[Mark]:
-    """Yields empty structures as dashed boxes with their names."""
     for plan in at.drawing.plans:
-        yield Frame(plan.box, themes.PLAN, 1.6 * at.hair, 8 * at.hair)
+        yield Frame(plan.box, marks.PLAN, 1.6 * at.hair, 8 * at.hair)
         left, bottom, right, top = plan.box
         fitting = (right - left) / max(1, 0.7 * len(plan.name))
         size = max(0.5 * at.font, min(1.2 * at.font, fitting, 0.6 * (top - bottom)))
         label = Text(
-            ((left + right) / 2, (top + bottom) / 2 - 0.3 * size), plan.name, size, themes.PLAN, "middle"
+            ((left + right) / 2, (top + bottom) / 2 - 0.3 * size), plan.name, size, marks.PLAN, "middle"
         )
         at.taken.add(label.box)
         yield label
@@ -253,13 +240,13 @@ def _points(at: Explainer) -> Iterator[Mark]:
     radius = 0.2 * at.font
     for p in places.values():
         at.taken.add((p[0] - radius, p[1] - radius, p[0] + radius, p[1] + radius))
-        yield Dot(p, radius, themes.POINT)
+        yield Dot(p, radius, marks.POINT)
     if len(places) <= MANY:
         size = 0.6 * at.font
         for key, p in places.items():
             spot = (p[0] - radius, p[1] - 1.5 * radius, p[0] + radius, p[1] + 1.5 * radius)
             text = " = ".join(names[key][:2]) + (" …" if len(names[key]) > 2 else "")
-            yield at.label(text, spot, themes.POINT, size)
+            yield at.label(text, spot, marks.POINT, size)
 
 
 def _named_points(geometry: SolvedGeometry, name: str) -> Iterator[tuple[str, Vec]]:
@@ -283,44 +270,35 @@ def _is_point(value: object) -> TypeGuard[Vec]:
 
 def _constraints(at: Explainer, corner: Vec) -> list[Mark]:
     """Returns numbers near what the constraints mention, and their texts in a list; violated ones in red."""
-    marks: list[Mark] = []
+    found: list[Mark] = []
     size, (left, top) = 0.7 * at.font, corner
-    things = _things(at.model.root)
+    every: list[_Thing] = [*at.model.root.walk(), *at.model.root.walk_geometry()]
+    things = {thing.path: thing for thing in reversed(every)}
     for number, constraint in enumerate(at.model.constraints, 1):
         checkpoint()
-        color = themes.GOOD if constraint.satisfied else themes.BAD
+        color = marks.GOOD if constraint.satisfied else marks.BAD
         spot = _spot(things, constraint)
         if spot is not None:
-            marks.append(at.label(str(number), spot, color, 0.75 * at.font, bold=True))
-        for k, line in enumerate(_constraint_lines(number, constraint)):
-            marks.append(Text((left + (1.6 * size if k else 0), top), line, size, color, halo=False))
+            found.append(at.label(str(number), spot, color, 0.75 * at.font, bold=True))
+        text = " ".join(constraint.text.split())
+        soft = "prefer " if constraint.soft and not text.startswith("prefer") else ""
+        holds = "" if constraint.satisfied else f"  ✗ off by {constraint.residual:.3g}"
+        words = f"{number}  {soft}{text}{holds}"
+        lines = wrap(words, LINE_LENGTH, break_long_words=False, break_on_hyphens=False)
+        for k, line in enumerate(lines):
+            found.append(Text((left + (1.6 * size if k else 0), top), line, size, color, halo=False))
             top -= 1.35 * size
-    return marks
-
-
-def _constraint_lines(number: int, constraint: ConstraintReport) -> list[str]:
-    text = " ".join(constraint.text.split())
-    holds = "" if constraint.satisfied else f"  ✗ off by {constraint.residual:.3g}"
-    soft = "prefer " if constraint.soft and not text.startswith("prefer") else ""
-    return wrap(f"{number}  {soft}{text}{holds}", LINE_LENGTH, break_long_words=False, break_on_hyphens=False)
+    return found
 
 
 def _spot(things: Mapping[str, _Thing], constraint: ConstraintReport) -> Bounds | None:
     """Returns a place between the things that a constraint mentions."""
-    boxes = [box for path in constraint.mentions() if (box := _box_of(things, path)) is not None]
-    if not boxes:
-        boxes = [box for box in [_box_of(things, constraint.path)] if box is not None]
-    if not boxes:
-        return None
-    x = sum(b[0] + b[2] for b in boxes) / (2 * len(boxes))
-    y = sum(b[1] + b[3] for b in boxes) / (2 * len(boxes))
-    return x, y, x, y
-
-
-def _things(root: SolvedStructure) -> dict[str, _Thing]:
-    """Returns all structures and geometry with its parts, by their paths."""
-    found: list[_Thing] = [*root.walk(), *root.walk_geometry()]
-    return {thing.path: thing for thing in reversed(found)}
+    for paths in (constraint.mentions(), (constraint.path,)):
+        if boxes := [box for path in paths if (box := _box_of(things, path)) is not None]:
+            x = sum(b[0] + b[2] for b in boxes) / (2 * len(boxes))
+            y = sum(b[1] + b[3] for b in boxes) / (2 * len(boxes))
+            return x, y, x, y
+    return None
 
 
 def _box_of(things: Mapping[str, _Thing], path: str) -> Bounds | None:
@@ -330,7 +308,7 @@ def _box_of(things: Mapping[str, _Thing], path: str) -> Bounds | None:
         known = known[: max(known.rfind("."), known.rfind("["), 0)]
     thing = things.get(known)
     if thing is None or isinstance(thing, SolvedStructure):
-        return None if thing is None else _bounds(thing)
+        return None if thing is None or thing.box is None else thing.box.bounds
     value = thing.values.get(path.removeprefix(known).lstrip(".") or "at")
     if _is_point(value):
         return value[0], value[1], value[0], value[1]
@@ -340,14 +318,14 @@ def _box_of(things: Mapping[str, _Thing], path: str) -> Bounds | None:
 
 def _degrees(at: Explainer, corner: Vec) -> list[Mark]:
     """Returns the degrees of freedom at each structure that has any, and the free parameters in a list."""
-    marks: list[Mark] = []
+    found: list[Mark] = []
     size, (left, top) = 0.7 * at.font, corner
     structures, mobility = list(at.model.root.walk()), at.model.mobility()
     free = _free_by_structure(structures, mobility.free)
-    for structure in structures:
-        box, (degrees, _) = _bounds(structure), mobility.of(structure)
-        if box is not None and (degrees or structure is at.model.root):
-            marks.append(at.label(f"{structure.name}: {degrees} dof", box, themes.FREE, size))
+    for structure, box in at.boxes():
+        degrees, _ = mobility.of(structure)
+        if degrees or structure is at.model.root:
+            found.append(at.label(f"{structure.name}: {degrees} dof", box, marks.FREE, size))
     count = mobility.degrees
     lines = [(0, "degrees of freedom not counted" if count is None else f"{count} degrees of freedom")]
     for structure in structures:
@@ -355,9 +333,9 @@ def _degrees(at: Explainer, corner: Vec) -> list[Mark]:
             lines.append((0, f"{structure.path}: {mobility.of(structure)[0]}"))
             lines += [(1, name) for name in names]
     for indent, line in lines:
-        marks.append(Text((left + indent * size, top), line, size, themes.FREE, halo=False))
+        found.append(Text((left + indent * size, top), line, size, marks.FREE, halo=False))
         top -= 1.35 * size
-    return marks
+    return found
 
 
 def _free_by_structure(structures: list[SolvedStructure], free: Iterable[str]) -> dict[str, list[str]]:

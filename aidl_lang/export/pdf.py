@@ -6,7 +6,6 @@ import io
 import math
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -19,6 +18,7 @@ from aidl_lang.common.resources import resource
 from aidl_lang.common.running import checkpoint
 from aidl_lang.export.job import ExportError
 from aidl_lang.export.marks import (
+    ANCHORS,
     Area,
     Curves,
     Dot,
@@ -31,6 +31,8 @@ from aidl_lang.export.marks import (
     Text,
     resolved,
     scaled,
+    separated,
+    spaced,
 )
 from aidl_lang.export.svg import to_svg
 from aidl_lang.geometry.curves import (
@@ -60,20 +62,13 @@ def font_file() -> str:
 
 def character_notes(pages: Iterable[Picture]) -> tuple[Diagnostic, ...]:
     """Warns of characters in the texts that the font lacks."""
-    texts = (
-        mark.text for page in pages for group in page.groups for mark in group.marks if isinstance(mark, Text)
-    )
+    texts = (mark.text for page in pages for mark in separated(page)[1])
     missing = unknown_characters("".join(dict.fromkeys("".join(texts))))
     if not missing:
         return ()
     shown = first_few([f"`{c}`" if c.isprintable() else f"U+{ord(c):04X}" for c in missing], _NAMED)
-    return (
-        Diagnostic(
-            "W0733",
-            f"the font has no {shown}; texts in the picture show a box in their place",
-            hints=("an SVG is shown with the fonts of the reader's system",),
-        ),
-    )
+    message = f"the font has no {shown}; texts in the picture show a box in their place"
+    return (Diagnostic("W0733", message, hints=("an SVG is shown with the fonts of the reader's system",)),)
 
 
 SLIMMEST = 1 / 100
@@ -90,8 +85,8 @@ def to_png(picture: Picture, pixels: int) -> bytes:
     import resvg_py
     from PIL import Image
 
-    picture = _widened(picture)
     whole = max(picture.width, picture.height)
+    picture = spaced(picture, SLIMMEST * whole, SLIMMEST * whole)
     density = MM_PER_INCH * pixels / whole
     if whole > LARGEST:  # round lines of such a size take resvg for ever, however few pixels they are
         picture = scaled(picture, LARGEST / whole)
@@ -113,13 +108,6 @@ def to_png(picture: Picture, pixels: int) -> bytes:
     with Image.open(io.BytesIO(bytes(drawn))) as image:
         image.convert("RGB").save(data, "PNG", **stated)
     return data.getvalue()
-
-
-def _widened(picture: Picture) -> Picture:
-    left, bottom, right, top = picture.box
-    least = SLIMMEST * max(picture.width, picture.height)
-    x, y = max(0.0, least - picture.width) / 2, max(0.0, least - picture.height) / 2
-    return replace(picture, box=(left - x, bottom - y, right + x, top + y))
 
 
 # --- PDF: pictures at 1:1, one on each page, as vectors with the font embedded.
@@ -147,12 +135,9 @@ def to_pdf(pages: Sequence[Picture], title: str) -> bytes:
 
     for page in pages:
         if max(page.width, page.height) > LONGEST:
-            raise ExportError(
-                "E0921",
-                f"the picture measures {size_text((page.width, page.height))}, and a page of a PDF ends at "
-                f"{LONGEST:.0f} mm",
-                "print it over several pages: `--tile a0`",
-            )
+            size = size_text((page.width, page.height))
+            message = f"the picture measures {size}, and a page of a PDF ends at {LONGEST:.0f} mm"
+            raise ExportError("E0921", message, "print it over several pages: `--tile a0`")
     pdfmetrics.registerFont(TTFont(FAMILY, font_file()))
     data = io.BytesIO()
     # invariant: no dates and no random numbers
@@ -210,8 +195,7 @@ class _Pen:
                 _add_pieces(path, [Circle(mark.at, mark.radius)])
                 self._canvas.drawPath(path, fill=1)
             case Frame():
-                dash = (mark.dash, 0.7 * mark.dash) if mark.dash else None
-                self._ink(Ink(mark.color, mark.width, dash))
+                self._ink(mark.ink)
                 self._canvas.drawPath(self._frame_path(mark.box))
 
     def _area(self, mark: Area) -> None:
@@ -239,10 +223,8 @@ class _Pen:
 
     def _shade(self, path: Any, gradient: Gradient) -> None:
         """Fills a path with a gradient, as dense as the fill is set to be."""
-        shares, colors = (
-            [stop.share for stop in gradient.stops],
-            [self._color(stop.color) for stop in gradient.stops],
-        )
+        shares = [stop.share for stop in gradient.stops]
+        colors = [self._color(stop.color) for stop in gradient.stops]
         with self._state():
             self._canvas.clipPath(path, stroke=0, fill=0, fillMode=0)
             if gradient.radius is None:
@@ -288,7 +270,7 @@ class _Pen:
         canvas.translate(*mark.at)
         canvas.rotate(mark.angle)
         width = canvas.stringWidth(mark.text, FAMILY, mark.size)
-        left = -{"start": 0.0, "middle": 0.5, "end": 1.0}[mark.anchor] * width
+        left = ANCHORS[mark.anchor] * width
         if mark.halo:
             with self._state():
                 self._text(mark, left, _WHITE, Ink(_WHITE, 0.22 * mark.size, is_round=True))
@@ -347,7 +329,6 @@ def _add_pieces(path: Any, pieces: Iterable[Piece]) -> None:
 
 
 def _cubics(piece: Piece) -> Iterator[tuple[Vec, Vec, Vec, Vec]]:
-    """Yields the control points of cubic Bézier curves for a piece."""
     if isinstance(piece, Bezier):
         yield piece.p0, piece.p1, piece.p2, piece.p3
         return

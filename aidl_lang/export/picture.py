@@ -6,30 +6,49 @@ import math
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from aidl_lang.common.colors import css_color, hexadecimal, rgb
 from aidl_lang.common.prose import fixed, size_text
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
-from aidl_lang.export import marks, themes
+from aidl_lang.export import marks
 from aidl_lang.export.job import ExportError, Job
-from aidl_lang.export.marks import LETTERS, Area, Curves, Dot, Frame, Group, Ink, Mark, Picture, Text, widened
+from aidl_lang.export.marks import (
+    LETTERS,
+    Area,
+    Curves,
+    Dot,
+    Frame,
+    Gradient,
+    Group,
+    Ink,
+    Mark,
+    Picture,
+    Stop,
+    Text,
+    themed,
+    widened,
+)
 from aidl_lang.export.overlay import explain, labels
-from aidl_lang.export.svg import gradient_of
-from aidl_lang.export.themes import themed
-from aidl_lang.geometry.boolean import united
-from aidl_lang.geometry.curves import Bounds, Line, Piece, Vec, union_bounds
-from aidl_lang.geometry.drawing import Drawing, Seam, Stroke
+from aidl_lang.geometry.boolean import united, without
+from aidl_lang.geometry.curves import (
+    Bounds,
+    Line,
+    Piece,
+    Vec,
+    all_bounds,
+    bounds,
+    larger_side,
+    points,
+    union_bounds,
+)
+from aidl_lang.geometry.drawing import Body, Drawing, Stroke
 from aidl_lang.geometry.nearness import inside
 from aidl_lang.geometry.region import Polygon, Region, face_polygons, piece_points, region_bounds
 from aidl_lang.geometry.solved import SolvedModel, SolvedStructure
-from aidl_lang.geometry.styles import DASH, GAP, Style, layers
-
-if TYPE_CHECKING:
-    from aidl_lang.export.svg import Halos
-
+from aidl_lang.geometry.styles import DASH, GAP, Shade, Style, layers, stacked
 
 # --- Splits pictures larger than the paper into several pages, printed 1:1 and joined afterwards.
 #
@@ -93,11 +112,8 @@ def tiled(picture: Picture, page: Size, overlap: float = OVERLAP) -> list[Pictur
     across = _Row.over(left, right, window[0], overlap)
     down = _Row.over(-top, -bottom, window[1], overlap)  # rows count from the top
     if across.count * down.count > MOST_PAGES:
-        raise ExportError(
-            "E0924",
-            f"{across.count * down.count} pages are more than {MOST_PAGES}",
-            "give a larger `--tile`",
-        )
+        message = f"{across.count * down.count} pages are more than {MOST_PAGES}"
+        raise ExportError("E0924", message, "give a larger `--tile`")
     crosses = [(x, -y) for x in across.seams(overlap) for y in down.quarters()]
     crosses += [(x, -y) for x in across.quarters() for y in down.seams(overlap)]
     shapes = [[(mark, _Shape(mark)) for mark in group.marks] for group in picture.groups]
@@ -122,11 +138,8 @@ def tiled(picture: Picture, page: Size, overlap: float = OVERLAP) -> list[Pictur
 
 def _check(page: Size, window: Size, overlap: float) -> None:
     if min(page) < SMALLEST_PAGE:
-        raise ExportError(
-            "E0924",
-            f"a page of {size_text(page)} is too small for tiles",
-            f"each side must have {fixed(SMALLEST_PAGE)} mm at least",
-        )
+        message = f"a page of {size_text(page)} is too small for tiles"
+        raise ExportError("E0924", message, f"each side must have {fixed(SMALLEST_PAGE)} mm at least")
     if overlap > min(window) / 2:
         raise ExportError(
             "E0924",
@@ -138,7 +151,7 @@ def _check(page: Size, window: Size, overlap: float) -> None:
 def _page_marks(sight: Bounds, crosses: Sequence[Vec], overlap: float, label: str) -> Iterator[Mark]:
     """Yields the marks that help to join the pages: corners, crosses, a label and a scale."""
     left, bottom, right, top = sight
-    ink = Ink(themes.PLAN, HAIRLINE)
+    ink = Ink(marks.PLAN, HAIRLINE)
     ticks: list[Piece] = []
     for x, out in ((left, -1.0), (right, 1.0)):
         for y, up in ((bottom, -1.0), (top, 1.0)):
@@ -153,8 +166,8 @@ def _page_marks(sight: Bounds, crosses: Sequence[Vec], overlap: float, label: st
     start, low = left + 2 * TICK, bottom - 2.5
     ends = (Line((x, low - 1), (x, low + 1)) for x in (start, start + SCALE))
     yield Curves((Line((start, low), (start + SCALE, low)), *ends), ink, "scale")
-    yield Text((start + SCALE + 1, low - 1), f"{fixed(SCALE)} mm", FONT, themes.PLAN, halo=False)
-    yield Text((start, top + 1.5), label, FONT, themes.PLAN, halo=False)
+    yield Text((start + SCALE + 1, low - 1), f"{fixed(SCALE)} mm", FONT, marks.PLAN, halo=False)
+    yield Text((start, top + 1.5), label, FONT, marks.PLAN, halo=False)
 
 
 class _Shape:
@@ -173,9 +186,9 @@ class _Shape:
             case Curves():
                 self._lines = [piece_points(piece, DEVIATION) for piece in mark.pieces]
                 air = mark.ink.width / 2
-            case Frame(box, _, width):
-                self._lines = [_outline(box)]
-                air = width / 2
+            case Frame():
+                self._lines = [_outline(mark.box)]
+                air = mark.width / 2
             case Text():
                 self._lines = [_outline(mark.box)]
                 self._filled = self._lines
@@ -230,7 +243,13 @@ _OVER = ":over"
 
 def picture(job: Job) -> Picture:
     """Returns the drawing as a picture by the options."""
-    return themed(_sheet(job) if job.options.sheet is not None else _whole(job), job.options.theme)
+    return themed(_whole(job) if job.options.sheet is None else _sheet(job), job.options.theme)
+
+
+def _sheet(job: Job) -> Picture:
+    texts = tuple(labels(job))
+    groups = [Group("show-labels", texts, {"class": "overlay"})] if texts else []
+    return Picture(job.drawing.box, (*_drawn(job, 1.0), *groups))
 
 
 def _whole(job: Job) -> Picture:
@@ -238,7 +257,7 @@ def _whole(job: Job) -> Picture:
     shadows = [] if options.for_cutter else list(_shadows(job.model.root, job.drawing))
     box = _picture_box(job.model, job.drawing, options.show)
     box = union_bounds([box, *(region_bounds(Region((area.face,))) for _, area in shadows)])
-    size = max(box[2] - box[0], box[3] - box[1]) or 1.0
+    size = larger_side(box) or 1.0
     seen, dimensions = box, tuple[Group, ...]()
     if options.dimension:
         from aidl_lang.export.dimensioning import dimensioned
@@ -258,7 +277,7 @@ def _whole(job: Job) -> Picture:
 def _drawn(job: Job, size: float, shadows: Iterable[tuple[str, Area]] = ()) -> Iterator[Group]:
     """Yields the groups of the drawing: for a cutter what it follows, else one for each structure."""
     if job.options.followed is not None:
-        from aidl_lang.export.sheets import followed_groups
+        from aidl_lang.export.cuts import followed_groups
 
         return followed_groups(job.model, job.drawing, job.options.followed)
     return _groups(job.model, job.drawing, [*shadows, *_marks(job.model.root, job.drawing, size)])
@@ -278,13 +297,6 @@ def pages(job: Job) -> list[Picture]:
     return tiled(whole, options.tile, overlap=options.overlap)
 
 
-def _sheet(job: Job) -> Picture:
-    groups = [*_drawn(job, 1.0)]
-    if texts := tuple(labels(job)):
-        groups.append(Group("show-labels", texts, {"class": "overlay"}))
-    return Picture(job.drawing.box, tuple(groups))
-
-
 def _picture_box(model: SolvedModel, drawing: Drawing, show: frozenset[str]) -> Bounds:
     """Returns the box that must be in sight. The box of the root stands in for a drawing without curves."""
     boxes = []
@@ -294,7 +306,7 @@ def _picture_box(model: SolvedModel, drawing: Drawing, show: frozenset[str]) -> 
         boxes += [plan.box for plan in drawing.plans]
     root = model.root.box
     if root is not None and (show or not boxes):
-        boxes.append((root.left, root.bottom, root.right, root.top))
+        boxes.append(root.bounds)
     return union_bounds(boxes) if boxes else (0.0, 0.0, 10.0, 10.0)
 
 
@@ -321,7 +333,8 @@ def _identity(structure: SolvedStructure, drawing: Drawing) -> dict[str, str]:
 
 
 def _marks(root: SolvedStructure, drawing: Drawing, size: float) -> Iterator[tuple[str, Mark]]:
-    halos, fills = _halos(root, drawing), _fills(root, drawing)
+    halos = Halos(drawing, root) if any(style.halo for style in drawing.styles.values()) else None
+    fills = _fills(root, drawing)
     for body in drawing.bodies:
         areas = list(_filled(body.region, body.style, fills[body.path], size))
         line = max((area.ink.width for area in areas if area.ink is not None), default=0.0)
@@ -330,16 +343,18 @@ def _marks(root: SolvedStructure, drawing: Drawing, size: float) -> Iterator[tup
     styles = {body.path: body.style for body in drawing.bodies}
     for seam in drawing.seams:
         if seam.is_asked or not styles[seam.body].is_unlined:
-            yield seam.path, _seam(seam, styles[seam.body], size)
-    marks = [(stroke, list(_strokes(stroke, size, fills))) for stroke in drawing.strokes]
+            ink = Ink(_outline_color(styles[seam.body]), SEAM_WIDTH * size)
+            ink = ink if seam.is_asked else replace(ink, opacity=_SEAM_OPACITY)
+            yield seam.path, Curves(seam.pieces, ink, "seam")
+    inked = [(stroke, list(_strokes(stroke, size, fills))) for stroke in drawing.strokes]
     if halos:  # before all lines: those of a drawing, which may join, clear none of its own
-        for stroke, own in marks:
+        for stroke, own in inked:
             line = max((mark.ink.width for mark in own if mark.ink is not None), default=0.0)
             for mark in halos.around_stroke(stroke, line):
                 yield stroke.path, mark
     kinds = {structure.path: structure.kind for structure in root.walk()}
     raised = {g.path for _, laid, is_over in layers(root) if is_over for g in laid}
-    for stroke, own in marks:
+    for stroke, own in inked:
         path = stroke.path
         if stroke.is_area:
             path = stroke.geometry if stroke.geometry in raised else path
@@ -350,7 +365,7 @@ def _marks(root: SolvedStructure, drawing: Drawing, size: float) -> Iterator[tup
 
 def _fills(root: SolvedStructure, drawing: Drawing) -> dict[str, str]:
     """Returns the colours of bodies, and of the solids that are united with them, by their paths."""
-    fills = {body.path: body.style.color or themes.body_fill(k) for k, body in enumerate(drawing.bodies)}
+    fills = {body.path: body.style.color or marks.body_fill(k) for k, body in enumerate(drawing.bodies)}
     for s in root.walk():
         inner = (c.path for c in s.structures if c.kind == s.kind == "solid" and s.path in fills)
         fills |= dict.fromkeys(inner, fills.get(s.path, ""))
@@ -368,15 +383,6 @@ def _shadows(root: SolvedStructure, drawing: Drawing) -> Iterator[tuple[str, Are
                 yield structure.path, Area(face, "black", None, marks.SHADOW, dark)
 
 
-def _halos(root: SolvedStructure, drawing: Drawing) -> Halos | None:
-    """Returns the gaps around what lies in front; None where none are asked for, as in most drawings."""
-    if not any(style.halo for style in drawing.styles.values()):
-        return None
-    from aidl_lang.export.svg import Halos
-
-    return Halos(drawing, root)
-
-
 def _filled(
     region: Region, style: Style, fill: str, size: float, role: str = "", whole: Sequence[Piece] = ()
 ) -> Iterator[Area]:
@@ -388,23 +394,18 @@ def _filled(
 
 
 def _outline_color(style: Style) -> str:
-    return themes.OUTLINE if style.color is None else themes.outline_of(style.color)
-
-
-def _seam(seam: Seam, style: Style, size: float) -> Curves:
-    ink = Ink(_outline_color(style), SEAM_WIDTH * size, opacity=1.0 if seam.is_asked else _SEAM_OPACITY)
-    return Curves(seam.pieces, ink, "seam")
+    return marks.OUTLINE if style.color is None else marks.outline_of(style.color)
 
 
 def _strokes(stroke: Stroke, size: float, fills: Mapping[str, str]) -> Iterator[Area | Curves]:
     style = stroke.style
     if stroke.role != "drawing":
-        ink = Ink(themes.LOOSE, STROKE_WIDTH * size, (DASH * size, GAP * size), is_round=True)
+        ink = Ink(marks.LOOSE, STROKE_WIDTH * size, (DASH * size, GAP * size), is_round=True)
         yield Curves(stroke.pieces, ink, stroke.role)
         return
-    color = style.color or themes.OUTLINE
+    color = style.color or marks.OUTLINE
     if stroke.over is not None:
-        color = themes.contrasting(stroke.over, style.color) if stroke.faces else themes.etched(stroke.over)
+        color = marks.contrasting(stroke.over, style.color) if stroke.faces else marks.etched(stroke.over)
     if stroke.is_area:
         color = style.color or fills.get(stroke.path, color)
         yield from _filled(Region(stroke.faces), style, color, size, marks.AREA, stroke.whole)
@@ -425,3 +426,98 @@ def _line(style: Style, color: str, width: float, size: float) -> Ink:
 
 def _opacity(style: Style) -> float:
     return 1.0 if style.opacity is None else style.opacity
+
+
+# --- Clear gaps around what lies in front (`@halo`): the colour of the paper, over all that is behind.
+
+
+class Halos:
+    """The gaps of a drawing; only what lies near something further back has one."""
+
+    def __init__(self, drawing: Drawing, root: SolvedStructure) -> None:
+        self._place = {s.path: place for place, s in enumerate(stacked(root))}
+        boxes = [(self._place[b.path], b.box) for b in drawing.bodies]
+        self._boxes = boxes + [(self._place[s.path], _box(s)) for s in drawing.strokes]
+
+    def around_body(self, body: Body, line: float) -> Iterator[Area]:
+        """Yields the gap around a body whose outline has a width."""
+        width = body.style.halo or 0.0
+        if width > 0 and self._covers(body.path, body.box, by := width + line / 2):
+            from aidl_lang.geometry.offsets import offset
+
+            wide = offset(body.region, by, sharp=False)
+            if body.style.is_clear:
+                wide = without(wide, body.region)
+            yield from (Area(face, marks.PAPER, None, marks.HALO) for face in wide.faces)
+
+    def around_stroke(self, stroke: Stroke, line: float) -> Iterator[Area | Curves]:
+        """Yields the gap around curves drawn as lines of a width; letters that are filled have lines of 0."""
+        width = stroke.style.halo or 0.0
+        if width > 0 and self._covers(stroke.path, _box(stroke), width + line / 2):
+            ink = Ink(marks.PAPER, line + 2 * width, is_round=True)
+            yield Curves(stroke.pieces, ink, marks.HALO)
+
+    def _covers(self, path: str, box: Bounds, by: float) -> bool:
+        """Tells whether the box of something, widened, meets that of something behind it."""
+        left, bottom, right, top = box[0] - by, box[1] - by, box[2] + by, box[3] + by
+        return any(
+            place < self._place[path] and b[0] < right and left < b[2] and b[1] < top and bottom < b[3]
+            for place, b in self._boxes
+        )
+
+
+def _box(stroke: Stroke) -> Bounds:
+    return union_bounds([bounds(piece) for piece in stroke.pieces])
+
+
+# --- Gradients of fills: light and shade on round things, and fills that go over into another colour.
+
+_LIGHT: dict[str, tuple[tuple[float, float], ...]] = {
+    "round": ((0, -0.26), (0.16, 0.2), (0.26, 0.34), (0.38, 0.22), (0.6, -0.06), (0.9, -0.44), (1, -0.36)),
+    "ball": ((0.0, 0.5), (0.5, 0.0), (1.0, -0.45)),
+    "slope": ((0.0, 0.18), (1.0, -0.26)),
+}
+"""Shares of the way, and how much lighter the colour is there, or darker where they are negative."""
+_FADING = ((0.0, 1.0), (0.3, 0.78), (0.6, 0.3), (0.8, 0.09), (1.0, 0.0))
+"""Shares of the way out of the middle, and the opacity there: as soft light and shadows end."""
+_SPOT = (0.36, 0.66)
+"""Where a ball is brightest: shares of the width and the height of its box."""
+_REACH = 0.72
+"""How far light reaches from there, in the larger side of the box."""
+_LIFT, _PALER = 0.6, 0.5
+"""What a tone adds to a colour of its own strength, and how much white."""
+_STEPS = np.linspace(0.0, 1.0, 9)
+
+
+def gradient_of(shade: Shade, color: str, outline: Sequence[Piece]) -> Gradient:
+    """Returns the fill of a colour in what has an outline, of which some may be hidden."""
+    stops = tuple(Stop(share, _toned(color, tone)) for share, tone in _LIGHT.get(shade.kind, ()))
+    left, bottom, right, top = union_bounds(all_bounds(outline))
+    width, height = right - left, top - bottom
+    if shade.way is None:
+        center = (left + width / 2, bottom + height / 2)
+        fading = tuple(Stop(share, color, opacity) for share, opacity in _FADING)
+        return Gradient(center, center, fading, width / 2, height / width)
+    if shade.kind == "ball":
+        spot = (left + _SPOT[0] * width, bottom + _SPOT[1] * height)
+        return Gradient(spot, spot, stops, _REACH * max(width, height))
+    ways = np.array([math.cos(math.radians(shade.way)), math.sin(math.radians(shade.way))])
+    spots = np.concatenate([points(piece, _STEPS) for piece in outline])
+    along = spots @ ways
+    middle = np.array([(left + right) / 2, (bottom + top) / 2])
+    start, end = (middle + (reach - middle @ ways) * ways for reach in (along.min(), along.max()))
+    other = css_color([shade.kind])
+    if shade.kind == "fade":
+        stops = (Stop(0.0, color), Stop(1.0, color, 0.0))
+    elif other is not None:
+        stops = (Stop(0.0, color), Stop(1.0, other))
+    return Gradient((float(start[0]), float(start[1])), (float(end[0]), float(end[1])), stops)
+
+
+def _toned(color: str, tone: float) -> str:
+    """Returns a colour in more light, or in less if the tone is negative. Light makes it stronger before it
+    makes it paler: red gleams red, and not pink.
+    """
+    lift = min(1 + _LIFT * tone, 255 / max(*rgb(color), 1)) if tone > 0 else 1 + tone
+    parts = [lift * part for part in rgb(color)]
+    return hexadecimal(part + _PALER * max(tone, 0.0) * (255 - part) for part in parts)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from aidl_lang.common.colors import css_color, hexadecimal, rgb
 from aidl_lang.common.names import fold, nearest
-from aidl_lang.common.prose import did_you_mean, listed, ticked
+from aidl_lang.common.prose import did_you_mean, listed, shortened, ticked
 from aidl_lang.common.records import record
 from aidl_lang.export.job import ExportError
 
@@ -89,13 +89,6 @@ class Profile:
             return hexadecimal(rgb(outline.style.color))
         return self.look(outline.style.layer, outline.operation).color
 
-    def with_layers(self, layers: Mapping[str, Layer]) -> Profile:
-        return replace(self, layers={**self.layers, **{fold(name): of for name, of in layers.items()}})
-
-
-def _looks(width: float, *looks: tuple[str, str]) -> dict[str, Look]:
-    return {op: Look(color, width, layer) for op, (color, layer) in zip(OPERATIONS, looks, strict=True)}
-
 
 _PLAIN_COLORS = ("#000000", "#0000ff", "#008000", "#ff0000", "#ff0000")
 PLAIN = Profile(
@@ -106,43 +99,36 @@ PLAIN = Profile(
 )
 """Red to cut and blue to engrave, on the layers of the program; nothing but what is asked for is filled."""
 
+
+def _of_machine(name: str, width: float, table: str) -> Profile:
+    """Returns a profile by a colour and a layer for each operation, and the width of all lines."""
+    looks = (Look(color, width, layer) for color, layer in (row.split() for row in table.split(", ")))
+    return Profile(name, dict(zip(OPERATIONS, looks, strict=True)))
+
+
 PROFILES = {
-    "plain": PLAIN,
-    # Colours of the program's palette, from the front of it to the back as they are carried out.
-    "lightburn": Profile(
-        "lightburn",
-        _looks(
+    made.name: made
+    for made in (
+        PLAIN,
+        # Colours of the program's palette, from the front of it to the back as they are carried out.
+        _of_machine(
+            "lightburn",
             0.1,
-            ("#000000", "C00-fill"),
-            ("#0000ff", "C01-engrave"),
-            ("#00e000", "C03-score"),
-            ("#ff8000", "C05-inner"),
-            ("#a00000", "C10-outer"),
+            "#000000 C00-fill, #0000ff C01-engrave, #00e000 C03-score, #ff8000 C05-inner, #a00000 C10-outer",
         ),
-    ),
-    # Steps are listed by colour: these rise.
-    "glowforge": Profile(
-        "glowforge",
-        _looks(
+        # Steps are listed by colour: these rise.
+        _of_machine(
+            "glowforge",
             0.1,
-            ("#000000", "fill"),
-            ("#0000ff", "engrave"),
-            ("#00ff00", "score"),
-            ("#ff0000", "inner"),
-            ("#ff00ff", "outer"),
+            "#000000 fill, #0000ff engrave, #00ff00 score, #ff0000 inner, #ff00ff outer",
         ),
-    ),
-    "ponoko": Profile(
-        "ponoko",
-        _looks(
+        _of_machine(
+            "ponoko",
             0.01,
-            ("#000000", "area-engraving"),
-            ("#ff0000", "line-engraving"),
-            ("#ff0000", "line-engraving"),
-            ("#0000ff", "cutting"),
-            ("#0000ff", "cutting"),
+            "#000000 area-engraving, #ff0000 line-engraving, #ff0000 line-engraving, "
+            "#0000ff cutting, #0000ff cutting",
         ),
-    ),
+    )
 }
 
 
@@ -183,14 +169,14 @@ class _Reader:
         base = PROFILES[self._word(table.get("base", "plain"), PROFILES, "base")]
         looks = {op: self._look(table.get(op, {}), base.looks[op], op, _LOOK) for op in OPERATIONS}
         layers = self._table(table.get("layers", {}), "layers")
-        made = replace(
+        return replace(
             base,
             name=self._name,
             looks=looks,
             order=self._order(table.get("order", list(base.order))),
             letters=self._word(table.get("letters", base.letters), (FILL, ENGRAVE), "letters"),
+            layers={**base.layers, **{fold(k): self._layer(said, k, looks) for k, said in layers.items()}},
         )
-        return made.with_layers({layer: self._layer(said, layer, looks) for layer, said in layers.items()})
 
     def _layer(self, said: Any, layer: str, looks: Mapping[str, Look]) -> Layer:
         where = f"layers.{layer}"
@@ -239,11 +225,8 @@ class _Reader:
 
     def _order(self, said: Any) -> tuple[str, ...]:
         if not isinstance(said, list) or sorted(map(str, said)) != sorted(OPERATIONS):
-            raise _wrong(
-                self._name,
-                f"`order` names each operation once, not {_shown(said)}",
-                f"the usual one is {listed(ticked(OPERATIONS))}",
-            )
+            hint = f"the usual one is {listed(ticked(OPERATIONS))}"
+            raise _wrong(self._name, f"`order` names each operation once, not {_shown(said)}", hint)
         return tuple(map(str, said))
 
     def _color(self, said: Any, where: str) -> str:
@@ -267,4 +250,4 @@ class _Reader:
 
 def _shown(value: Any) -> str:
     text = f'"{value}"' if isinstance(value, str) else str(value)
-    return f"`{text if len(text) <= 60 else text[:59] + '…'}`"
+    return f"`{shortened(text, 60)}`"

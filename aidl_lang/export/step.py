@@ -295,11 +295,9 @@ def _refusals(path: str) -> Iterator[None]:
     try:
         yield
     except _REFUSALS as reason:
-        raise ExportError(
-            "E0918",
-            f"`{path}` cannot be written as STEP: Open CASCADE makes no valid shape of it",
-            "look for a size that was written in another unit, or sides that almost coincide",
-        ) from reason
+        message = f"`{path}` cannot be written as STEP: Open CASCADE makes no valid shape of it"
+        hint = "look for a size that was written in another unit, or sides that almost coincide"
+        raise ExportError("E0918", message, hint) from reason
 
 
 @contextmanager

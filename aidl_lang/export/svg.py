@@ -6,37 +6,18 @@ import io
 import math
 import re
 import sys
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
-from functools import singledispatch
+from functools import partial
 from importlib import import_module
 from types import ModuleType
 from typing import Any
 
-import numpy as np
-
-from aidl_lang.common.colors import css_color, hexadecimal, rgb
 from aidl_lang.common.prose import fixed
 from aidl_lang.common.running import checkpoint
-from aidl_lang.export import themes
 from aidl_lang.export.job import UNITS
-from aidl_lang.export.marks import (
-    HALO,
-    Area,
-    Curves,
-    Dot,
-    Frame,
-    Gradient,
-    Group,
-    Ink,
-    Mark,
-    Picture,
-    Stop,
-    Text,
-    scaled,
-)
-from aidl_lang.geometry.boolean import without
+from aidl_lang.export.marks import Area, Curves, Dot, Frame, Gradient, Group, Ink, Mark, Picture, Text, scaled
 from aidl_lang.geometry.curves import (
     Arc,
     Bezier,
@@ -47,17 +28,10 @@ from aidl_lang.geometry.curves import (
     Line,
     Piece,
     Vec,
-    all_bounds,
-    bounds,
     ends,
     point,
-    points,
-    union_bounds,
 )
-from aidl_lang.geometry.drawing import Body, Drawing, Stroke
 from aidl_lang.geometry.region import Face, Loop
-from aidl_lang.geometry.solved import SolvedStructure
-from aidl_lang.geometry.styles import Shade, stacked
 
 # --- Loads `svgwrite` without the modules that drawings do not use, which triple its loading time.
 
@@ -81,36 +55,33 @@ def _loaded_later(name: str, *functions: str) -> Iterator[None]:
     if name in sys.modules:
         yield
         return
-    stand_in = _StandIn(name)
-    for function in functions:
-        setattr(stand_in, function, _calling(name, function))
-    sys.modules[name] = stand_in
+    stand_in = sys.modules[name] = _StandIn(name, functions)
     try:
         yield
     finally:
-        _remove(stand_in)
-
-
-def _calling(name: str, function: str) -> Callable[..., Any]:
-    def call(*args: Any, **named: Any) -> Any:
-        return getattr(import_module(name), function)(*args, **named)
-
-    return call
+        stand_in.give_way()
 
 
 class _StandIn(ModuleType):
     """A placeholder module that gives way to the real one when another thread asks it for more."""
 
+    def __init__(self, name: str, functions: Sequence[str]) -> None:
+        super().__init__(name)
+        for function in functions:
+            setattr(self, function, partial(self._call, function))
+
+    def _call(self, function: str, *args: Any, **named: Any) -> Any:
+        return getattr(import_module(self.__name__), function)(*args, **named)
+
     def __getattr__(self, name: str) -> Any:
         if name.startswith("__"):
             raise AttributeError(name)
-        _remove(self)
+        self.give_way()
         return getattr(import_module(self.__name__), name)
 
-
-def _remove(stand_in: ModuleType) -> None:
-    if sys.modules.get(stand_in.__name__) is stand_in:
-        del sys.modules[stand_in.__name__]
+    def give_way(self) -> None:
+        if sys.modules.get(self.__name__) is self:
+            del sys.modules[self.__name__]
 
 
 # --- SVG path data from exact pieces. Coordinates turn upside down: SVG counts y downwards.
@@ -182,105 +153,9 @@ def _segment(piece: Piece) -> str:
     if abs(piece.sweep) > 1.9 * math.pi:
         # Nearly full turns lose their direction in rounding: go by way of the middle.
         return f"A{_radii(piece)} 0 {flag} {xy(point(piece, 0.5))}A{_radii(piece)} 0 {flag} {xy(piece.end)}"
-    is_large = (
-        abs(piece.sweep) > math.pi + _HALF
-    )  # of two equal halves no machine says otherwise than another
+    # Of two equal halves no machine says otherwise than another.
+    is_large = abs(piece.sweep) > math.pi + _HALF
     return f"A{_radii(piece)} {int(is_large)} {flag} {xy(piece.end)}"
-
-
-# --- Clear gaps around what lies in front (`@halo`): the colour of the paper, over all that is behind.
-
-
-class Halos:
-    """The gaps of a drawing; only what lies near something further back has one."""
-
-    def __init__(self, drawing: Drawing, root: SolvedStructure) -> None:
-        self._place = {s.path: place for place, s in enumerate(stacked(root))}
-        boxes = [(self._place[b.path], b.box) for b in drawing.bodies]
-        self._boxes = boxes + [(self._place[s.path], _box(s)) for s in drawing.strokes]
-
-    def around_body(self, body: Body, line: float) -> Iterator[Area]:
-        """Yields the gap around a body whose outline has a width."""
-        width = body.style.halo or 0.0
-        if width > 0 and self._covers(body.path, body.box, by := width + line / 2):
-            from aidl_lang.geometry.offsets import offset
-
-            wide = offset(body.region, by, sharp=False)
-            if body.style.is_clear:
-                wide = without(wide, body.region)
-            yield from (Area(face, themes.PAPER, None, HALO) for face in wide.faces)
-
-    def around_stroke(self, stroke: Stroke, line: float) -> Iterator[Area | Curves]:
-        """Yields the gap around curves drawn as lines of a width; letters that are filled have lines of 0."""
-        width = stroke.style.halo or 0.0
-        if width > 0 and self._covers(stroke.path, _box(stroke), width + line / 2):
-            ink = Ink(themes.PAPER, line + 2 * width, is_round=True)
-            yield Curves(stroke.pieces, ink, HALO)
-
-    def _covers(self, path: str, box: Bounds, by: float) -> bool:
-        """Tells whether the box of something, widened, meets that of something behind it."""
-        left, bottom, right, top = box[0] - by, box[1] - by, box[2] + by, box[3] + by
-        return any(
-            place < self._place[path] and b[0] < right and left < b[2] and b[1] < top and bottom < b[3]
-            for place, b in self._boxes
-        )
-
-
-def _box(stroke: Stroke) -> Bounds:
-    return union_bounds([bounds(piece) for piece in stroke.pieces])
-
-
-# --- Gradients of fills: light and shade on round things, and fills that go over into another colour.
-
-_LIGHT: dict[str, tuple[tuple[float, float], ...]] = {
-    "round": ((0, -0.26), (0.16, 0.2), (0.26, 0.34), (0.38, 0.22), (0.6, -0.06), (0.9, -0.44), (1, -0.36)),
-    "ball": ((0.0, 0.5), (0.5, 0.0), (1.0, -0.45)),
-    "slope": ((0.0, 0.18), (1.0, -0.26)),
-}
-"""Shares of the way, and how much lighter the colour is there, or darker where they are negative."""
-_FADING = ((0.0, 1.0), (0.3, 0.78), (0.6, 0.3), (0.8, 0.09), (1.0, 0.0))
-"""Shares of the way out of the middle, and the opacity there: as soft light and shadows end."""
-_SPOT = (0.36, 0.66)
-"""Where a ball is brightest: shares of the width and the height of its box."""
-_REACH = 0.72
-"""How far light reaches from there, in the larger side of the box."""
-_LIFT, _PALER = 0.6, 0.5
-"""What a tone adds to a colour of its own strength, and how much white."""
-_STEPS = np.linspace(0.0, 1.0, 9)
-
-
-def gradient_of(shade: Shade, color: str, outline: Sequence[Piece]) -> Gradient:
-    """Returns the fill of a colour in what has an outline, of which some may be hidden."""
-    stops = tuple(Stop(share, _toned(color, tone)) for share, tone in _LIGHT.get(shade.kind, ()))
-    left, bottom, right, top = union_bounds(all_bounds(outline))
-    width, height = right - left, top - bottom
-    if shade.way is None:
-        center = (left + width / 2, bottom + height / 2)
-        fading = tuple(Stop(share, color, opacity) for share, opacity in _FADING)
-        return Gradient(center, center, fading, width / 2, height / width)
-    if shade.kind == "ball":
-        spot = (left + _SPOT[0] * width, bottom + _SPOT[1] * height)
-        return Gradient(spot, spot, stops, _REACH * max(width, height))
-    ways = np.array([math.cos(math.radians(shade.way)), math.sin(math.radians(shade.way))])
-    spots = np.concatenate([points(piece, _STEPS) for piece in outline])
-    along = spots @ ways
-    middle = np.array([(left + right) / 2, (bottom + top) / 2])
-    start, end = (middle + (reach - middle @ ways) * ways for reach in (along.min(), along.max()))
-    other = css_color([shade.kind])
-    if shade.kind == "fade":
-        stops = (Stop(0.0, color), Stop(1.0, color, 0.0))
-    elif other is not None:
-        stops = (Stop(0.0, color), Stop(1.0, other))
-    return Gradient((float(start[0]), float(start[1])), (float(end[0]), float(end[1])), stops)
-
-
-def _toned(color: str, tone: float) -> str:
-    """Returns a colour in more light, or in less if the tone is negative. Light makes it stronger before it
-    makes it paler: red gleams red, and not pink.
-    """
-    lift = min(1 + _LIFT * tone, 255 / max(*rgb(color), 1)) if tone > 0 else 1 + tone
-    parts = [lift * part for part in rgb(color)]
-    return hexadecimal(part + _PALER * max(tone, 0.0) * (255 - part) for part in parts)
 
 
 FONT = "DejaVu Sans, Verdana, Arial, sans-serif"
@@ -329,11 +204,10 @@ def _gradient(gradient: Gradient, name: str, svg: Any) -> Any:
     (x0, y0), (x1, y1) = gradient.start, gradient.end
     start, end = (fixed(x0), fixed(-y0)), (fixed(x1), fixed(-y1))
     looks = {"id": name, "gradientUnits": "userSpaceOnUse"}
-    made = (
-        svg.linearGradient(start, end, **looks)
-        if gradient.radius is None
-        else svg.radialGradient(start, fixed(gradient.radius), **looks)
-    )
+    if gradient.radius is None:
+        made = svg.linearGradient(start, end, **looks)
+    else:
+        made = svg.radialGradient(start, fixed(gradient.radius), **looks)
     if gradient.height != 1:
         made["gradientTransform"] = (
             f"matrix(1 0 0 {fixed(gradient.height)} 0 {fixed(-y0 * (1 - gradient.height))})"
@@ -359,24 +233,25 @@ def _clean(text: str) -> str:
     return _NOT_XML.sub("\ufffd", text)
 
 
-@singledispatch
 def _element(mark: Mark, svg: Any) -> Any:
-    raise TypeError(mark)
-
-
-@_element.register
-def _(mark: Area, svg: Any) -> Any:
-    looks = {"fill": mark.fill or "none", "fill_rule": "evenodd"}
-    if mark.opacity != 1:
-        looks["fill_opacity"] = fixed(mark.opacity)
-    looks |= {"stroke": "none"} if mark.ink is None else _looks(mark.ink, closed=True)
-    return svg.path(d=face_path(mark.face), **looks, **_role(mark.role))
-
-
-@_element.register
-def _(mark: Curves, svg: Any) -> Any:
-    looks = {"fill": "none"} | _looks(mark.ink)
-    return svg.path(d=open_path(mark.pieces), **looks, **_role(mark.role))
+    match mark:
+        case Area():
+            looks = {"fill": mark.fill or "none", "fill_rule": "evenodd"}
+            if mark.opacity != 1:
+                looks["fill_opacity"] = fixed(mark.opacity)
+            looks |= {"stroke": "none"} if mark.ink is None else _looks(mark.ink, closed=True)
+            return svg.path(d=face_path(mark.face), **looks, **_role(mark.role))
+        case Curves():
+            looks = {"fill": "none"} | _looks(mark.ink)
+            return svg.path(d=open_path(mark.pieces), **looks, **_role(mark.role))
+        case Text():
+            return _text(mark, svg)
+        case Dot(at, radius, color):
+            center, width = (fixed(at[0]), fixed(-at[1])), fixed(0.3 * radius)
+            looks = {"fill": color, "stroke": "#ffffff", "stroke_width": width}
+            return svg.circle(center=center, r=fixed(radius), **looks)
+        case Frame():
+            return _rectangle(mark.box, svg, fill="none", **_looks(mark.ink))
 
 
 def _role(role: str) -> dict[str, str]:
@@ -396,8 +271,7 @@ def _looks(ink: Ink, *, closed: bool = False) -> dict[str, str]:
     return looks
 
 
-@_element.register
-def _(mark: Text, svg: Any) -> Any:
+def _text(mark: Text, svg: Any) -> Any:
     looks = {"font_size": fixed(mark.size), "font_family": FONT, "fill": mark.color}
     if mark.anchor != "start":
         looks["text_anchor"] = mark.anchor
@@ -417,23 +291,6 @@ def _(mark: Text, svg: Any) -> Any:
     both.add(halo)
     both.add(text)
     return both
-
-
-@_element.register
-def _(mark: Dot, svg: Any) -> Any:
-    return svg.circle(
-        center=(fixed(mark.at[0]), fixed(-mark.at[1])),
-        r=fixed(mark.radius),
-        fill=mark.color,
-        stroke="#ffffff",
-        stroke_width=fixed(0.3 * mark.radius),
-    )
-
-
-@_element.register
-def _(mark: Frame, svg: Any) -> Any:
-    ink = Ink(mark.color, mark.width, (mark.dash, 0.7 * mark.dash) if mark.dash else None)
-    return _rectangle(mark.box, svg, fill="none", **_looks(ink))
 
 
 def _rectangle(box: Bounds, svg: Any, **looks: str) -> Any:

@@ -6,6 +6,7 @@ from collections.abc import Collection, Iterator, Mapping
 
 from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.prose import fixed, listed, named, ticked
+from aidl_lang.common.source import Span
 from aidl_lang.export.job import Job
 from aidl_lang.geometry.solved import SolvedGeometry, SolvedStructure
 from aidl_lang.geometry.styles import is_filled, is_unlined
@@ -36,55 +37,47 @@ _WHY: Mapping[str, str] = {
 }
 
 
-def unsaid_notes(job: Job, suffix: str, *, cuts: bool) -> list[Diagnostic]:
-    """Returns a note if a file has no place for stated looks; `cuts`: a cutter may read the format."""
-    file = "cutter" if cuts and job.options.for_cutter else suffix.replace(".stp", ".step")
+def notes_of(job: Job, suffix: str, *, cuts: bool) -> list[Diagnostic]:
+    """Returns what a file does not hold as it is said; `cuts`: a cutter may read the format."""
+    said = [*_blind(job, suffix), *_followed(job)] if cuts else []
+    return [*_unsaid(job, "cutter" if cuts and job.options.for_cutter else suffix), *said]
+
+
+def _unsaid(job: Job, suffix: str) -> Iterator[Diagnostic]:
+    """Yields a note if a file has no place for stated looks."""
+    file = suffix.replace(".stp", ".step")
     lost = [name for name, files in _WITHOUT.items() if file in files.split()]
-    stated = list(_stated(job.model.root, lost))
-    if not stated:
-        return []
-    names, times = [n for n in lost if any(n == name for _, name in stated)], len({id(h) for h, _ in stated})
-    counts = "counts" if len(names) == 1 else "count"
-    return [
-        Diagnostic(
-            "N0741",
-            f"{listed(ticked(names, '@'))} {counts} for nothing in this file: {_WHY[file]}",
-            stated[0][0].span,
-            "stated here" if times == 1 else f"stated here first, {times} times in all",
-            hints=("pictures (.svg, .png, .pdf) are drawn so",),
-        )
-    ]
+    if stated := list(_stated(job.model.root, lost)):
+        names = [n for n in lost if any(n == name for _, name in stated)]
+        times = len({id(holder) for holder, _ in stated})
+        counts = "counts" if len(names) == 1 else "count"
+        message = f"{listed(ticked(names, '@'))} {counts} for nothing in this file: {_WHY[file]}"
+        label = "stated here" if times == 1 else f"stated here first, {times} times in all"
+        hint = "pictures (.svg, .png, .pdf) are drawn so"
+        yield Diagnostic("N0741", message, stated[0][0].span, label, hints=(hint,))
 
 
-def blind_notes(job: Job, suffix: str) -> list[Diagnostic]:
-    """Returns a note on holes that end in their solid, of which a cutter can engrave the outline alone."""
+def _blind(job: Job, suffix: str) -> Iterator[Diagnostic]:
+    """Yields a note on holes that end in their solid, of which a cutter can engrave the outline alone."""
     depths = {path: s.depth for path, s in job.drawing.styles.items() if s.is_blind}
     blind = [path for path in job.drawing.regions if path in depths]
-    if not blind or (job.options.followed is None and suffix != ".dxf"):
-        return []
-    structure = job.model.root.find(blind[0])
-    is_one = len(blind) == 1
-    deep = {fixed(depths[path][0]) for path in blind}
-    return [
-        Diagnostic(
-            "N0756",
-            f"{named(blind, _NAMED)} {'ends' if is_one else 'end'} in {'its' if is_one else 'their'} solid: "
-            f"{'its outline is' if is_one else 'their outlines are'} engraved, and nothing is cut there",
-            None if structure is None else structure.span,
-            hints=(f"sink or mill there to the depth that is said: {listed(sorted(deep))} mm",),
-        )
-    ]
+    if blind and (job.options.followed is not None or suffix == ".dxf"):
+        is_one = len(blind) == 1
+        what = "ends in its solid: its outline is" if is_one else "end in their solid: their outlines are"
+        deep = listed(sorted({fixed(depths[path][0]) for path in blind}))
+        message = f"{named(blind, _NAMED)} {what} engraved, and nothing is cut there"
+        hint = f"sink or mill there to the depth that is said: {deep} mm"
+        yield Diagnostic("N0756", message, _span(job.model.root, blind[0]), hints=(hint,))
 
 
-def followed_notes(job: Job) -> list[Diagnostic]:
-    """Returns notes on layers that a cutter's profile does not know, and on areas that are none."""
+def _followed(job: Job) -> Iterator[Diagnostic]:
+    """Yields notes on layers that a cutter's profile does not know, and on areas that are none."""
     asked, profile = job.options.profile, job.options.followed
     if profile is None:
-        return []
+        return
     from aidl_lang.export.cuts import unfilled
     from aidl_lang.export.profiles import PLAIN
 
-    notes = []
     unknown = {
         str(s.attributes["layer"][0]): s.span
         for s in reversed(list(job.model.root.walk()))
@@ -92,27 +85,23 @@ def followed_notes(job: Job) -> list[Diagnostic]:
     }
     if unknown and asked not in (None, PLAIN):
         names = list(unknown)[::-1]
-        notes.append(
-            Diagnostic(
-                "N0754",
-                f"the profile `{profile.name}` does not say what is done on the "
-                f"{'layer' if len(names) == 1 else 'layers'} {named(names)}: "
-                "parts are cut there and drawings engraved as elsewhere",
-                unknown[names[0]],
-                hints=(f'say it in a file for `--profile`: `[layers]` with `"{names[0]}" = "score"`',),
-            )
+        yield Diagnostic(
+            "N0754",
+            f"the profile `{profile.name}` does not say what is done on the "
+            f"{'layer' if len(names) == 1 else 'layers'} {named(names)}: "
+            "parts are cut there and drawings engraved as elsewhere",
+            unknown[names[0]],
+            hints=(f'say it in a file for `--profile`: `[layers]` with `"{names[0]}" = "score"`',),
         )
     for path in unfilled(job.drawing, profile):
-        structure = job.model.root.find(path)
-        notes.append(
-            Diagnostic(
-                "W0757",
-                f"lines of `{path}` enclose nothing, so there they are engraved as lines and not as areas",
-                None if structure is None else structure.span,
-                hints=("close them: end each where the next one begins", "or put them on a layer for lines"),
-            )
-        )
-    return notes
+        message = f"lines of `{path}` enclose nothing, so there they are engraved as lines and not as areas"
+        hints = "close them: end each where the next one begins", "or put them on a layer for lines"
+        yield Diagnostic("W0757", message, _span(job.model.root, path), hints=hints)
+
+
+def _span(root: SolvedStructure, path: str) -> Span | None:
+    structure = root.find(path)
+    return None if structure is None else structure.span
 
 
 def _states(holder: _Holder, kind: str, name: str) -> bool:
@@ -127,35 +116,26 @@ def _stated(root: SolvedStructure, names: Collection[str]) -> Iterator[tuple[_Ho
         yield from ((each, name) for each in holders for name in names if _states(each, structure.kind, name))
 
 
-def twice_compensated(root: SolvedStructure, width: float) -> list[Diagnostic]:
-    """Returns a note if a program makes up by itself for a cut that outlines are now widened by."""
-    shapes = [
-        shape
-        for structure in root.walk()
-        for geometry in structure.drawn
-        for shape in geometry.walk()
-        if not shape.construction and _own_kerf(shape.values)
-    ]
-    others = [structure for structure in root.walk() if _own_kerf(structure.params)]
-    if not (shapes or others):
-        return []
+def twice_compensated(root: SolvedStructure, width: float) -> Iterator[Diagnostic]:
+    """Yields a note if a program makes up by itself for a cut that outlines are now widened by."""
+    drawn = (shape for s in root.walk() for geometry in s.drawn for shape in geometry.walk())
+    shapes = [shape for shape in drawn if not shape.construction and _own_kerf(shape.values)]
     # What is drawn is told before the param that it is drawn by.
-    first = shapes[0] if shapes else others[0]
-    own = fixed(_own_kerf(shapes[0].values if shapes else others[0].params))
-    more = f" and {len(shapes) - 1} more" if len(shapes) > 1 else ""
-    return [
-        Diagnostic(
+    holders: list[_Holder] = [*shapes, *(s for s in root.walk() if _own_kerf(s.params))]
+    if holders:
+        first = holders[0]
+        own = _own_kerf(first.params if isinstance(first, SolvedStructure) else first.values)
+        more = f" and {len(shapes) - 1} more" if len(shapes) > 1 else ""
+        twice = f"by `--kerf` and by the `kerf` of `{first.path}`{more}"
+        label = f"drawn for a cut of {fixed(own)} mm, and grown for one of {fixed(width)} mm"
+        without = "or have the program draw without it: with `-D kerf=0` if it is a `param`"
+        yield Diagnostic(
             "N0742",
-            "the width of the cut is made up for twice: "
-            f"by `--kerf` and by the `kerf` of `{first.path}`{more}",
+            f"the width of the cut is made up for twice: {twice}",
             first.span,
-            f"drawn for a cut of {own} mm, and grown for one of {fixed(width)} mm",
-            hints=(
-                "leave out `--kerf`: the program does it",
-                "or have the program draw without it: with `-D kerf=0` if it is a `param`",
-            ),
+            label,
+            hints=("leave out `--kerf`: the program does it", without),
         )
-    ]
 
 
 def _own_kerf(values: Mapping[str, object]) -> float:

@@ -7,9 +7,8 @@ from collections.abc import Iterator
 from aidl_eval.regions import Regions
 from aidl_eval.shapes import PIXELS
 from aidl_lang.export import render as render_picture
-from aidl_lang.export import themes
 from aidl_lang.export.job import Options
-from aidl_lang.export.marks import Area, Curves, Group, Ink, Mark, Picture
+from aidl_lang.export.marks import OUTLINE, Area, Curves, Group, Ink, Mark, Picture, body_fill, outline_of
 from aidl_lang.export.picture import MARGIN, OUTLINE_WIDTH
 from aidl_lang.geometry.curves import bounds, union_bounds
 from aidl_lang.geometry.region import region_bounds
@@ -25,10 +24,9 @@ def neutral(drawn: Regions) -> bytes:
 
 def colored(drawn: Regions) -> bytes:
     """Returns a PNG in the colours that the program gives; without one, in those of AIDL's drawings."""
-    fills = [part.color or themes.body_fill(number) for number, part in enumerate(drawn.parts)]
+    fills = [part.color or body_fill(number) for number, part in enumerate(drawn.parts)]
     edges = [
-        themes.outline_of(fill) if part.color else themes.OUTLINE
-        for fill, part in zip(fills, drawn.parts, strict=True)
+        outline_of(fill) if part.color else OUTLINE for fill, part in zip(fills, drawn.parts, strict=True)
     ]
     return _png(drawn, fills, edges)
 

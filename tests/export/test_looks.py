@@ -11,8 +11,9 @@ from ezdxf.document import Drawing as Document
 from PIL import Image
 from pypdfium2 import PdfDocument
 
-from aidl_lang.export import export, themes
+from aidl_lang.export import export
 from aidl_lang.export.job import Exported, Job, Options
+from aidl_lang.export.marks import LIGHT, OUTLINE
 from tests.compiled import compiled
 from tests.export.colours import near
 
@@ -143,7 +144,7 @@ def test_outlines_are_a_darker_tone_of_the_fill() -> None:
     """
     svg = written(".svg", program).data.decode()
     found = dict(re.findall(r'data-path="a\.(\w+)".*?stroke="([^"]*)"', svg, re.DOTALL))
-    assert found.pop("plain") == themes.OUTLINE
+    assert found.pop("plain") == OUTLINE
     assert found == {"dark": "#000000", "toned": "#6e3716", "pale": "#808080"}
     for theme, line in (("blueprint", "#eaf2ff"), ("ink", "#000000"), ("cutter", "#ff0000")):
         lines = re.findall(r'stroke="(#[^"]*)"', written(".svg", program, theme=theme).data.decode())
@@ -516,5 +517,5 @@ def test_letters_without_a_colour_of_their_own_can_be_read_on_what_they_lie_on()
     """Whether they are written in what they lie on or beside it."""
     svg = written(".svg", INSCRIBED).data.decode()
     fills = re.findall(r'class="letters".* fill="(#?\w+)"', svg)
-    light, dark = themes.LIGHT, themes.OUTLINE
+    light, dark = LIGHT, OUTLINE
     assert fills == [light, dark, light, dark, "dimgray"]

@@ -7,7 +7,7 @@ import re
 import pytest
 
 from aidl_lang.export.job import Options
-from aidl_lang.export.themes import REDUCED, THEMES
+from aidl_lang.export.marks import REDUCED, THEMES
 from tests.compiled import compiled
 
 PROGRAM = """

@@ -11,7 +11,8 @@ from itertools import pairwise
 from pathlib import PurePosixPath
 from typing import TYPE_CHECKING, Any, TypeAlias
 
-from aidl_lang.common.font_files import Curve, Vec, point_of
+from aidl_lang.common.diagnostics import Diagnostic
+from aidl_lang.common.font_files import Curve, Vec, point_of, quadratic
 from aidl_lang.common.names import fold
 from aidl_lang.common.prose import counted, listed
 from aidl_lang.common.records import record
@@ -55,10 +56,13 @@ class Bow:
     def at(self, t: float) -> Vec:
         """Returns the point at a parameter."""
         c, s = math.cos(t), math.sin(t)
-        return (
-            self.center[0] + self.u[0] * c + self.v[0] * s,
-            self.center[1] + self.u[1] * c + self.v[1] * s,
-        )
+        x = self.center[0] + self.u[0] * c + self.v[0] * s
+        return x, self.center[1] + self.u[1] * c + self.v[1] * s
+
+    def heading(self, t: float) -> Vec:
+        """Returns the derivative at a parameter."""
+        c, s = math.cos(t), math.sin(t)
+        return self.v[0] * c - self.u[0] * s, self.v[1] * c - self.u[1] * s
 
 
 Stroke: TypeAlias = Curve | Bow
@@ -145,7 +149,8 @@ def _furthest(stroke: Stroke, way: Vec) -> float:
     best = max(map(along, ends(stroke)))
     if isinstance(stroke, Bow):
         across, up = along(stroke.u), along(stroke.v)
-        if _passes(stroke, math.atan2(up, across)):
+        ahead = (math.atan2(up, across) - stroke.first) * math.copysign(1.0, stroke.sweep) % TURN
+        if ahead <= abs(stroke.sweep):  # it passes there
             best = max(best, along(stroke.center) + math.hypot(across, up))
         return best
     if len(stroke) < 4:
@@ -155,12 +160,6 @@ def _furthest(stroke: Stroke, way: Vec) -> float:
         s = 1.0 - t
         best = max(best, s * s * s * a + 3 * s * s * t * b + 3 * s * t * t * c + t * t * t * d)
     return best
-
-
-def _passes(bow: Bow, t: float) -> bool:
-    """Tells whether an arc goes through a parameter."""
-    ahead = (t - bow.first) * math.copysign(1.0, bow.sweep) % TURN
-    return ahead <= abs(bow.sweep)
 
 
 def _turning_points(a: float, b: float, c: float, d: float) -> Iterator[float]:
@@ -195,21 +194,11 @@ def as_curves(stroke: Stroke) -> tuple[Curve, ...]:
     for k in range(count):
         first, last = stroke.first + k * step, stroke.first + (k + 1) * step
         start, end = stroke.at(first), stroke.at(last)
-        one, two = (
-            _moved(start, _heading(stroke, first), handle),
-            _moved(end, _heading(stroke, last), -handle),
-        )
+        (dx, dy), (ex, ey) = stroke.heading(first), stroke.heading(last)
+        one = start[0] + dx * handle, start[1] + dy * handle
+        two = end[0] - ex * handle, end[1] - ey * handle
         found.append((start, one, two, end))
     return tuple(found)
-
-
-def _heading(bow: Bow, t: float) -> Vec:
-    c, s = math.cos(t), math.sin(t)
-    return bow.v[0] * c - bow.u[0] * s, bow.v[1] * c - bow.u[1] * s
-
-
-def _moved(p: Vec, way: Vec, by: float) -> Vec:
-    return p[0] + way[0] * by, p[1] + way[1] * by
 
 
 # --- B-splines as cubic Bézier curves.
@@ -223,7 +212,8 @@ def cubics(entity: Any) -> tuple[list[Curve], bool]:
     """Returns the cubics of a SPLINE, and whether they are the same curve."""
     spline: BSpline = entity.construction_tool()
     if spline.degree <= 3 and not spline.is_rational and spline.is_clamped:
-        return [_raised([flat(p) for p in piece]) for piece in spline.bezier_decomposition()], True
+        pieces = (tuple(map(flat, piece)) for piece in spline.bezier_decomposition())
+        return [quadratic(*piece) if len(piece) == 3 else piece for piece in pieces], True
     points = [flat(p) for p in spline.control_points]
     size = max(max(axis) - min(axis) for axis in zip(*points, strict=True)) or 1.0
     knots = sorted(set(spline.knots()[spline.degree : len(spline.knots()) - spline.degree]))
@@ -238,18 +228,6 @@ def cubics(entity: Any) -> tuple[list[Curve], bool]:
 
 def flat(p: Any) -> Vec:
     return float(p[0]), float(p[1])
-
-
-def _raised(points: list[Vec]) -> Curve:
-    """Returns a Bézier curve of a degree up to 3 as a line or a cubic."""
-    while 2 < len(points) < 4:
-        n = len(points)
-        inner = [
-            tuple((k * a + (n - k) * b) / n for a, b in zip(points[k - 1], points[k], strict=True))
-            for k in range(1, n)
-        ]
-        points = [points[0], *((x, y) for x, y in inner), points[-1]]
-    return tuple(points)
 
 
 def _followed(spline: BSpline, first: float, last: float, near: float, halvings: int) -> Iterator[Curve]:
@@ -345,18 +323,9 @@ class Trace:
     @cached_property
     def silhouette(self) -> tuple[Curve, ...]:
         """The corners and curves of which some point is the furthest in every direction."""
-        from aidl_lang.common.lettering import silhouette_of
+        from aidl_lang.common.lettering import silhouette
 
-        return silhouette_of([curve for stroke in self.strokes for curve in as_curves(stroke)])
-
-
-@record(eq=False)
-class Remark:
-    """A thing to be told of a drawing: the code of a diagnostic, its message and hints."""
-
-    code: str
-    message: str
-    hints: tuple[str, ...] = ()
+        return silhouette([curve for stroke in self.strokes for curve in as_curves(stroke)])
 
 
 @record(eq=False)
@@ -368,7 +337,7 @@ class OutlineFile:
 
     whole: Trace
     parts: Mapping[str, Trace]
-    remarks: tuple[Remark, ...] = ()
+    remarks: tuple[Diagnostic, ...] = ()
 
     def trace(self, name: str) -> Trace:
         """Returns the outlines under a name."""
@@ -404,11 +373,9 @@ class Collector:
         for number in (n for stroke in found for n in numbers(stroke)):
             if not math.isfinite(number) or abs(number) > FURTHEST:
                 named = f" in `{names[-1]}`" if names else ""
-                raise DrawingError(
-                    "E0364",
-                    f"`{self.what}` reaches further than {FURTHEST / 1e6:g} km from its origin{named}",
-                    "look whether a coordinate or a transform in it is what was meant",
-                )
+                message = f"`{self.what}` reaches further than {FURTHEST / 1e6:g} km from its origin{named}"
+                hint = "look whether a coordinate or a transform in it is what was meant"
+                raise DrawingError("E0364", message, hint)
         if kept:
             self.elements.append(Element(tuple(names), kept, is_winding, engraving))
 
@@ -419,14 +386,11 @@ class Collector:
 
     def check(self) -> None:
         if self.curves > MOST_CURVES or self.numbers > MOST_NUMBERS:
-            raise DrawingError(
-                "E0363",
-                f"`{self.what}` has more than {MOST_CURVES:,} curves",
-                "simplify it in the program that drew it, or export fewer of its layers",
-            )
+            hint = "simplify it in the program that drew it, or export fewer of its layers"
+            raise DrawingError("E0363", f"`{self.what}` has more than {MOST_CURVES:,} curves", hint)
 
-    def leave_out(self, kind: str, count: int = 1) -> None:
-        self.left_out[kind] = self.left_out.get(kind, 0) + count
+    def leave_out(self, kind: str) -> None:
+        self.left_out[kind] = self.left_out.get(kind, 0) + 1
 
 
 # --- Reading of a drawing file, by the suffix of its name, and the names in it made names of AIDL.
@@ -476,19 +440,15 @@ def _left_out(found: Collector) -> Iterator[str]:
         yield f"left out: {listed(counts)}"
 
 
-def _told(found: Collector, more: int) -> Iterator[Remark]:
+def _told(found: Collector, more: int) -> Iterator[Diagnostic]:
     for text in _left_out(found):
-        yield Remark(
-            "N0751",
-            f"`{found.what}` has more than outlines; {text}",
-            ("only outlines are imported; in the program that drew it texts can be turned into paths",),
-        )
+        message = f"`{found.what}` has more than outlines; {text}"
+        hint = "only outlines are imported; in the program that drew it texts can be turned into paths"
+        yield Diagnostic("N0751", message, hints=(hint,))
     if more:
-        yield Remark(
-            "N0751",
-            f"`{found.what}` has {more} names beyond the first {MOST_NAMES}, which cannot be used",
-            ("give names to the groups or layers that are needed, and leave the rest without",),
-        )
+        message = f"`{found.what}` has {more} names beyond the first {MOST_NAMES}, which cannot be used"
+        hint = "give names to the groups or layers that are needed, and leave the rest without"
+        yield Diagnostic("N0751", message, hints=(hint,))
 
 
 def _parts(elements: Iterable[Element], kind: str) -> tuple[dict[str, Trace], int]:

@@ -10,6 +10,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
+from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.drawings import (
     TURN,
     Bow,
@@ -17,14 +18,13 @@ from aidl_lang.common.drawings import (
     DrawingError,
     Engraving,
     Matrix,
-    Remark,
     Stroke,
     cubics,
     ends,
     flat,
     mapped,
 )
-from aidl_lang.common.font_files import Vec
+from aidl_lang.common.font_files import FAULTS, Vec
 from aidl_lang.common.prose import counted
 from aidl_lang.common.running import checkpoint
 
@@ -38,52 +38,33 @@ ENGRAVED = "AIDL_ENGRAVED"
 """The application under which AIDL says of an entity that it is engraved, and how."""
 
 _NAMES = {
-    "TEXT": "text",
-    "MTEXT": "text",
-    "ATTRIB": "text",
-    "ATTDEF": "text",
-    "DIMENSION": "dimension",
-    "ARC_DIMENSION": "dimension",
-    "LEADER": "leader",
-    "MULTILEADER": "leader",
-    "HATCH": "hatch",
-    "MPOLYGON": "hatch",
-    "POINT": "point",
-    "IMAGE": "image",
-    "VIEWPORT": "viewport",
-    "SOLID": "filled face",
-    "TRACE": "filled face",
-    "3DFACE": "filled face",
-    "MESH": "mesh",
-    "RAY": "endless line",
-    "XLINE": "endless line",
+    kind: name
+    for name, kinds in {
+        "text": "TEXT MTEXT ATTRIB ATTDEF",
+        "dimension": "DIMENSION ARC_DIMENSION",
+        "leader": "LEADER MULTILEADER",
+        "hatch": "HATCH MPOLYGON",
+        "point": "POINT",
+        "image": "IMAGE",
+        "viewport": "VIEWPORT",
+        "filled face": "SOLID TRACE 3DFACE",
+        "mesh": "MESH",
+        "endless line": "RAY XLINE",
+    }.items()
+    for kind in kinds.split()
 }
 """How entities that are no outlines are called."""
-
-_FAULTS = (
-    ArithmeticError,
-    AssertionError,
-    AttributeError,
-    EOFError,
-    LookupError,
-    OSError,
-    RecursionError,
-    StopIteration,
-    TypeError,
-    ValueError,
-)
-"""What ezdxf raises for files that are not as they should be, beside its own errors."""
 
 logging.getLogger("ezdxf").addHandler(logging.NullHandler())
 
 
-def read(data: bytes, name: str) -> tuple[Collector, list[Remark]]:
+def read(data: bytes, name: str) -> tuple[Collector, list[Diagnostic]]:
     """Returns the elements of a DXF file and what there is to be told of it. Raises DrawingError."""
     document = _loaded(data, name)
     walk = _Walk(document, name)
     try:
         walk.entities(document.modelspace(), (), "")
-    except _FAULTS as reason:
+    except FAULTS as reason:
         raise _broken(name) from reason
     return walk.done()
 
@@ -106,7 +87,7 @@ def _loaded(data: bytes, name: str) -> Drawing:
         hint = "export fewer of its layers, or simplify it"
         message = f"`{name}` is refused: it has more than {MOST_ENTITIES:,} entities"
         raise DrawingError("E0363", message, hint)
-    faults = (*_FAULTS, ezdxf.DXFError)  # type: ignore[attr-defined]
+    faults = (*FAULTS, ezdxf.DXFError)  # type: ignore[attr-defined]
     try:
         encoding = dxf_stream_info(io.StringIO(data.decode("utf-8", "ignore"))).encoding
         text = data.decode(encoding, "surrogateescape").replace("\r\n", "\n")
@@ -132,7 +113,7 @@ class _Walk:
         self.hidden = {layer.dxf.name.lower() for layer in hidden}
         self.unit = _millimetres(document.header.get("$INSUNITS", 0))
 
-    def done(self) -> tuple[Collector, list[Remark]]:
+    def done(self) -> tuple[Collector, list[Diagnostic]]:
         for (names, engraving), strokes in self.open.items():
             self.found.add(names, strokes, engraving=engraving)
         return self.found, list(self._remarks())
@@ -207,25 +188,20 @@ class _Walk:
                 self.fitted += not is_exact
                 yield from curves
 
-    def _remarks(self) -> Iterator[Remark]:
+    def _remarks(self) -> Iterator[Diagnostic]:
         if self.circular:
-            message = (
-                f"`{self.name}` has a block that stands in itself, `{self.circular[0]}`: it is left out there"
-            )
-            yield Remark("W0752", message, ("export it anew in the program that drew it",))
+            block = f"a block that stands in itself, `{self.circular[0]}`"
+            hint = "export it anew in the program that drew it"
+            yield Diagnostic("W0752", f"`{self.name}` has {block}: it is left out there", hints=(hint,))
         if self.fitted:
-            yield Remark(
-                "N0752",
-                f"{counted(self.fitted, 'spline')} of `{self.name}` are followed by cubics, "
-                "to a ten millionth of their size",
-                ("rational splines, and those of a degree above 3, are no Bézier curves",),
-            )
+            splines = f"{counted(self.fitted, 'spline')} of `{self.name}`"
+            message = f"{splines} are followed by cubics, to a ten millionth of their size"
+            hint = "rational splines, and those of a degree above 3, are no Bézier curves"
+            yield Diagnostic("N0752", message, hints=(hint,))
         if self.unit is None and self.found.elements:
-            yield Remark(
-                "N0753",
-                f"`{self.name}` does not say its unit, and is taken to be in millimetres",
-                ("if it is in inches, write `scale: 25.4`; or set `$INSUNITS` where it is drawn",),
-            )
+            message = f"`{self.name}` does not say its unit, and is taken to be in millimetres"
+            hint = "if it is in inches, write `scale: 25.4`; or set `$INSUNITS` where it is drawn"
+            yield Diagnostic("N0753", message, hints=(hint,))
 
 
 def _engraving(entity: Any) -> Engraving | None:

@@ -11,13 +11,13 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 
+from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.drawings import (
     STILL,
     Collector,
     DrawingError,
     Engraving,
     Matrix,
-    Remark,
     Stroke,
     ends,
     mapped,
@@ -74,7 +74,7 @@ class _Place:
     layer: str | None = None
 
 
-def read(data: bytes, name: str) -> tuple[Collector, list[Remark]]:
+def read(data: bytes, name: str) -> tuple[Collector, list[Diagnostic]]:
     """Returns the elements of an SVG file and what there is to be told of it. Raises DrawingError."""
     return _Walk(xml.read(data, name), name).run()
 
@@ -96,7 +96,7 @@ class _Walk:
             if node.tag == "style":
                 self.rules += _rules(node.text)
 
-    def run(self) -> tuple[Collector, list[Remark]]:
+    def run(self) -> tuple[Collector, list[Diagnostic]]:
         width, height, matrix = self._page()
         flip: Matrix = (MM_PER_PIXEL, 0.0, 0.0, -MM_PER_PIXEL, 0.0, height * MM_PER_PIXEL)
         place = _Place(product(flip, matrix), (width, height), {})
@@ -109,8 +109,7 @@ class _Walk:
         """Returns width and height of the page in pixels, and the map of its coordinates to these."""
         box = self._view_box(self.root)
         full = (box[2], box[3]) if box else _PAGE
-        width = self._page_length("width", full[0], full[0])
-        height = self._page_length("height", full[1], full[1])
+        width, height = map(self._page_length, ("width", "height"), full)
         given = [name for name in ("width", "height") if _states(self.root, name)]
         if box and len(given) == 1:  # the other follows
             if given == ["width"]:
@@ -119,11 +118,11 @@ class _Walk:
                 width = height * box[2] / box[3]
         return width, height, self._fitted(self.root, box, width, height)
 
-    def _page_length(self, name: str, default: float, whole: float) -> float:
-        if not _states(self.root, name):
-            return default
-        value = self._length(self.root, self.root.attributes[name], whole)
-        return value if value > 0.0 else default
+    def _page_length(self, name: str, full: float) -> float:
+        stated = (
+            self._length(self.root, self.root.attributes[name], full) if _states(self.root, name) else 0.0
+        )
+        return stated if stated > 0.0 else full
 
     # --- Elements ------------------------------------------------------------------------------
 
@@ -139,19 +138,18 @@ class _Walk:
         if node.tag in _UNSEEN or node.tag == "":
             return
         style = self._style(node, place.style)
-        if style.get("display") == "none" or (self.is_own and _explains(node)):
+        explains = {"overlay", "dimension", "seam"}.intersection(node.attributes.get("class", "").split())
+        if style.get("display") == "none" or (self.is_own and explains):
             return
         if any(style.get(way, "none") != "none" for way in ("clip-path", "mask")):
             self.found.leave_out("clipped or masked shape")
-        matrix = self._transform(node, style, place.matrix)
-        place = _Place(
-            matrix,
-            place.page,
-            style,
-            (*place.names, *_names(node)),
-            (*place.around, node),
-            *_engraved(node, place),
-        )
+        try:
+            matrix = product(place.matrix, transform(node.attributes.get("transform", "")))
+        except (ValueMistake, ArithmeticError):
+            self.broken.append(_called(node))
+            matrix = place.matrix
+        names, around = (*place.names, *_names(node)), (*place.around, node)
+        place = _Place(matrix, place.page, style, names, around, *_engraved(node, place))
         if node.tag == "use":
             self._use(node, place)
         elif node.tag == "svg":
@@ -186,12 +184,8 @@ class _Walk:
         if place.operation is not None:
             color = place.style.get("fill" if is_filled else "stroke") if place.operation == "" else None
             engraving = Engraving(place.layer, color, is_filled)
-        self.found.add(
-            place.names,
-            (mapped(s, place.matrix) for s in strokes),
-            is_winding=is_winding,
-            engraving=engraving,
-        )
+        placed = (mapped(stroke, place.matrix) for stroke in strokes)
+        self.found.add(place.names, placed, is_winding=is_winding, engraving=engraving)
 
     def _use(self, node: Node, place: _Place) -> None:
         target = self.by_id.get(node.attributes.get("href", "").strip().removeprefix("#"))
@@ -251,14 +245,6 @@ class _Walk:
         style |= dict(declarations(node.attributes.get("style", "")))
         return {name: value for name, value in style.items() if value != "inherit"}
 
-    def _transform(self, node: Node, style: Mapping[str, str], matrix: Matrix) -> Matrix:
-        text = node.attributes.get("transform", "")
-        try:
-            return product(matrix, transform(text))
-        except (ValueMistake, ArithmeticError):
-            self.broken.append(_called(node))
-            return matrix
-
     def _length(self, node: Node, text: str, whole: float, otherwise: float = 0.0) -> float:
         try:
             return pixels(text, whole)
@@ -301,31 +287,21 @@ class _Walk:
 
     # --- What is to be told --------------------------------------------------------------------
 
-    def _remarks(self) -> Iterator[Remark]:
-        if self.broken:
-            names = list(dict.fromkeys(self.broken))
-            yield Remark(
-                "W0752",
-                f"`{self.name}` has attributes that cannot be read, in {first_few(ticked(names), 5)}",
-                ("paths are taken as far as they are readable; save it anew in the program that drew it",),
-            )
-        if self.circular:
-            names = list(dict.fromkeys(self.circular))
-            yield Remark(
-                "W0752",
-                f"`{self.name}` refers to itself in {first_few(ticked(names), 5)}, where nothing is drawn",
-                ("a `use` element may not stand in what it refers to",),
-            )
+    def _remarks(self) -> Iterator[Diagnostic]:
+        broken, circular = (ticked(dict.fromkeys(names)) for names in (self.broken, self.circular))
+        if broken:
+            message = f"`{self.name}` has attributes that cannot be read, in {first_few(broken, 5)}"
+            hint = "paths are taken as far as they are readable; save it anew in the program that drew it"
+            yield Diagnostic("W0752", message, hints=(hint,))
+        if circular:
+            message = f"`{self.name}` refers to itself in {first_few(circular, 5)}, where nothing is drawn"
+            hint = "a `use` element may not stand in what it refers to"
+            yield Diagnostic("W0752", message, hints=(hint,))
 
 
 def _states(node: Node, name: str) -> bool:
     text = node.attributes.get(name, "auto").strip()
     return text not in ("", "auto") and not text.endswith("%")
-
-
-def _explains(node: Node) -> bool:
-    """Tells whether something in a picture of AIDL is no part of what is drawn."""
-    return not {"overlay", "dimension", "seam"}.isdisjoint(node.attributes.get("class", "").split())
 
 
 def _engraved(node: Node, around: _Place) -> tuple[str | None, str | None]:

@@ -9,7 +9,7 @@ from dataclasses import field
 from itertools import pairwise
 from xml.parsers import expat
 
-from aidl_lang.common.drawings import STILL, TURN, Bow, DrawingError, Matrix, Stroke, ellipse, product
+from aidl_lang.common.drawings import STILL, TURN, Bow, DrawingError, Matrix, Stroke, circle, ellipse, product
 from aidl_lang.common.font_files import Vec, quadratic
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
@@ -45,11 +45,9 @@ def read(data: bytes, path: str) -> Node:
         reader.parser.Parse(data, True)
     except expat.ExpatError as reason:
         what = expat.ErrorString(reason.code)
-        raise DrawingError(
-            "E0362",
-            f"`{path}` is not well-formed: {what} in line {reason.lineno}",
-            "save it anew as plain SVG in the program that drew it",
-        ) from None
+        message = f"`{path}` is not well-formed: {what} in line {reason.lineno}"
+        hint = "save it anew as plain SVG in the program that drew it"
+        raise DrawingError("E0362", message, hint) from None
     except (LookupError, ValueError):  # an encoding that is unknown, or takes several bytes
         raise DrawingError(
             "E0362", f"`{path}` is in an encoding that is not known", "save it anew as UTF-8"
@@ -120,19 +118,8 @@ def _plain(attributes: dict[str, str]) -> dict[str, str]:
 # --- The values of attributes in SVG: lengths, numbers, transforms, styles and the data of paths.
 
 MM_PER_PIXEL = 25.4 / 96
-_PIXELS = {
-    "": 1.0,
-    "px": 1.0,
-    "in": 96.0,
-    "mm": 96 / 25.4,
-    "cm": 960 / 25.4,
-    "q": 24 / 25.4,
-    "pt": 96 / 72,
-    "pc": 16.0,
-    "em": 16.0,
-    "rem": 16.0,
-    "ex": 8.0,
-}
+_PIXELS = {"px": 1.0, "in": 96.0, "mm": 96 / 25.4, "cm": 960 / 25.4, "q": 24 / 25.4, "pt": 96 / 72, "ex": 8.0}
+_PIXELS |= dict.fromkeys(("pc", "em", "rem"), 16.0)
 """Pixels in each unit of length; em and ex are those of the text that browsers begin with."""
 
 _NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
@@ -149,7 +136,7 @@ def pixels(text: str, whole: float) -> float:
     found = _LENGTH.fullmatch(text)
     if found is None:
         raise ValueMistake(text)
-    number, unit = float(found[1]), found[2].lower()
+    number, unit = float(found[1]), found[2].lower() or "px"
     if unit == "%":
         return number * whole / 100
     if unit not in _PIXELS:
@@ -282,11 +269,10 @@ class _Pen:
     ) -> None:
         self._add(_arc(self.here, end, abs(rx), abs(ry), rotation, bool(is_large), bool(is_clockwise)))
 
-    def closePath(self) -> None:  # noqa: N802
-        pass
-
     def endPath(self) -> None:  # noqa: N802
         pass
+
+    closePath = endPath  # noqa: N815
 
     def _add(self, stroke: Stroke) -> None:
         self.strokes.append(stroke)
@@ -352,7 +338,7 @@ def _strokes(node: Node, page: tuple[float, float]) -> Iterator[Stroke]:
         case "circle":
             radius = pixels(node.attributes.get("r", "0"), math.hypot(*page) / math.sqrt(2))
             if radius > 0.0:
-                yield ellipse((length("cx", 0), length("cy", 1)), (radius, 0.0), (0.0, radius))
+                yield circle((length("cx", 0), length("cy", 1)), radius)
         case "ellipse":
             a, b = _radii(node, page)
             if a > 0.0 and b > 0.0:

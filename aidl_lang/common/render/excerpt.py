@@ -189,6 +189,10 @@ class Mark:
     def is_multiline(self) -> bool:
         return self.last > self.first
 
+    @property
+    def sign(self) -> str:
+        return "^" if self.primary else "-"
+
 
 def mark(label: Label, primary: bool) -> Mark:
     """Returns the place of a label in lines; one that ends with a line break ends on the line it breaks."""
@@ -202,26 +206,23 @@ def mark(label: Label, primary: bool) -> Mark:
 
 
 class ExcerptRow:
-    """One row of characters under construction, each with the kind of label that drew it."""
+    """One row of characters under construction, each with whether the label that drew it is primary."""
 
-    def __init__(self) -> None:
-        self._cells: list[tuple[str, str]] = []
+    def __init__(self, width: int) -> None:
+        self._cells: list[tuple[str, bool | None]] = [(" ", None)] * width
 
-    def put(self, column: int, text: str, kind: str) -> None:
-        self._cells += [(" ", "")] * (column + len(text) - len(self._cells))
-        self._cells[column : column + len(text)] = [(char, kind) for char in text]
+    def put(self, column: int, text: str, by: Mark) -> None:
+        self._cells += [(" ", None)] * (column + len(text) - len(self._cells))
+        self._cells[column : column + len(text)] = [(char, by.primary) for char in text]
 
     def painted(self, style: TerminalStyle, severity: Severity) -> str:
-        return "".join(
-            _paint("".join(char for char, _ in run), kind, style, severity)
-            for kind, run in groupby(self._cells, key=lambda cell: cell[1])
-        )
-
-
-def _paint(text: str, kind: str, style: TerminalStyle, severity: Severity) -> str:
-    if kind == "primary":
-        return style.severity(text, severity)
-    return style.gutter(text) if kind == "secondary" else text
+        row = ""
+        for primary, run in groupby(self._cells, key=lambda cell: cell[1]):
+            text = "".join(char for char, _ in run)
+            if primary is not None:
+                text = style.severity(text, severity) if primary else style.gutter(text)
+            row += text
+        return row
 
 
 @record()
@@ -294,13 +295,12 @@ class Bars:
 
     def row(self, number: int, starting: str | None = None, ended: Iterable[Mark] = ()) -> ExcerptRow:
         """Returns the bars that pass a line; given its text, also those that begin before its first word."""
-        row = ExcerptRow()
-        row.put(0, " " * self.width, "")
+        row = ExcerptRow(self.width)
         for slot, m in enumerate(self.marks):
             if m.first < number <= m.last and m not in ended:
-                row.put(2 * slot, "|", _kind(m))
+                row.put(2 * slot, "|", m)
             elif starting is not None and m.first == number and not starting[: m.start].strip():
-                row.put(2 * slot, "/", _kind(m))
+                row.put(2 * slot, "/", m)
         return row
 
     def starting(self, number: int, text: str) -> list[Mark]:
@@ -315,23 +315,23 @@ class Bars:
         row = self.row(number)
         for slot, m in enumerate(self.marks):
             if m.first == number:
-                row.put(2 * slot, "|", _kind(m))
+                row.put(2 * slot, "|", m)
         return row
 
     def opening(self, m: Mark, column: int) -> ExcerptRow:
         slot = self.marks.index(m)
         row = self.row(m.first)
         reach = self.width - 2 * slot + column
-        row.put(2 * slot, " " + "_" * (reach - 1) + _sign(m), _kind(m))
+        row.put(2 * slot, " " + "_" * (reach - 1) + m.sign, m)
         return row
 
     def closing(self, m: Mark, column: int) -> ExcerptRow:
         slot = self.marks.index(m)
         row = self.row(m.last, ended=[e for e in self.ending(m.last) if self.marks.index(e) > slot])
         reach = self.width - 2 * slot + column
-        row.put(2 * slot, "|" + "_" * (reach - 1) + _sign(m), _kind(m))
+        row.put(2 * slot, "|" + "_" * (reach - 1) + m.sign, m)
         if m.text:
-            row.put(self.width + column + 2, m.text, _kind(m))
+            row.put(self.width + column + 2, m.text, m)
         return row
 
 
@@ -343,37 +343,29 @@ def _annotations(marks: list[Mark], view: Window, bars: Bars, number: int) -> It
     carets = bars.below(number)
     for m in sorted(marks, key=lambda m: m.primary):
         start, end = places[m]
-        carets.put(start, _sign(m) * (end - start), _kind(m))
+        carets.put(start, m.sign * (end - start), m)
     beside = max(marks, key=lambda m: places[m])
     hanging = [m for m in marks if m.text]
     if all(places[m][1] <= places[beside][0] for m in marks if m is not beside):
         hanging = [m for m in hanging if m is not beside]
         if beside.text:
-            carets.put(places[beside][1] + 1, beside.text, _kind(beside))
+            carets.put(places[beside][1] + 1, beside.text, beside)
     yield carets
     while hanging:
         yield _stems(hanging, places, bars, number)
         last = hanging.pop()
         row = _stems(hanging, places, bars, number)
-        row.put(places[last][0], last.text, _kind(last))
+        row.put(places[last][0], last.text, last)
         yield row
 
 
 def _stems(marks: list[Mark], places: dict[Mark, tuple[int, int]], bars: Bars, number: int) -> ExcerptRow:
     row = bars.below(number)
     for m in marks:
-        row.put(places[m][0], "|", _kind(m))
+        row.put(places[m][0], "|", m)
     return row
 
 
 def _place(m: Mark, view: Window, shift: int) -> tuple[int, int]:
     start = view.column(m.start)
     return shift + start, shift + max(start + 1, view.column(m.end))
-
-
-def _sign(m: Mark) -> str:
-    return "^" if m.primary else "-"
-
-
-def _kind(m: Mark) -> str:
-    return "primary" if m.primary else "secondary"

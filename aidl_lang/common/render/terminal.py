@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from typing import Any
 
 from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix, Label, Severity
-from aidl_lang.common.prose import counted, listed
+from aidl_lang.common.prose import counted, listed, shortened
 from aidl_lang.common.records import record
 from aidl_lang.common.render.excerpt import Excerpt, Mark, TerminalStyle, escape, mark, window
 from aidl_lang.common.source import SourceFile, Span
@@ -66,18 +66,13 @@ def _changes(source: SourceFile, edits: list[Edit]) -> Iterator[ChangedLine]:
     tail = _common(old[head:][::-1], new[head:][::-1])
     gone, come = old[head : len(old) - tail], new[head : len(new) - tail]
     number = first + head
-    if not gone:
-        yield from _context(source, number)
+    if not gone and number > 1:
+        yield ChangedLine(number - 1, " ", source.line(number - 1))
     focus = _differing(gone[0], come[0]) if len(gone) == len(come) == 1 else ((0, 0), (0, 0))
     for i, text in enumerate(gone[:_LONGEST]):
         yield ChangedLine(number + i, "-", text, focus[0])
     for i, text in enumerate(come[:_LONGEST]):
         yield ChangedLine(number + i, "+", text, focus[1])
-
-
-def _context(source: SourceFile, number: int) -> Iterator[ChangedLine]:
-    if number > 1:
-        yield ChangedLine(number - 1, " ", source.line(number - 1))
 
 
 def _patched(source: SourceFile, edits: list[Edit], first: int, last: int) -> list[str]:
@@ -89,20 +84,15 @@ def _patched(source: SourceFile, edits: list[Edit], first: int, last: int) -> li
     return [line.rstrip("\r") for line in text.split("\n")]
 
 
-def _common(a: list[str], b: list[str]) -> int:
-    """Returns the number of items that two lists have in common at their beginning."""
-    count = 0
-    for x, y in zip(a, b, strict=False):
-        if x != y:
-            break
-        count += 1
-    return count
+def _common(a: Sequence[str], b: Sequence[str]) -> int:
+    """Returns the number of items that two texts or lists have in common at their beginning."""
+    return next((k for k, (x, y) in enumerate(zip(a, b, strict=False)) if x != y), min(len(a), len(b)))
 
 
 def _differing(a: str, b: str) -> tuple[tuple[int, int], tuple[int, int]]:
     """Returns the range of each text that the other does not share."""
-    head = _common(list(a), list(b))
-    tail = _common(list(a[head:])[::-1], list(b[head:])[::-1])
+    head = _common(a, b)
+    tail = _common(a[head:][::-1], b[head:][::-1])
     return (head, len(a) - tail), (head, len(b) - tail)
 
 
@@ -148,9 +138,12 @@ class _Page:
         arrow = "-->"
         for source, marks in self.marks.items():
             yield self._arrow(arrow, source, marks)
-            yield from self._excerpt(source, marks)
+            yield self._bar()
+            excerpt = Excerpt(source, tuple(marks), self.diagnostic.severity, self.style, self.width)
+            yield from (self._bar(text, number) for number, text in excerpt.rows())
             arrow = ":::"
-        notes = [*(("hint", hint) for hint in self.diagnostic.hints), *self._fix_title()]
+        notes = [("hint", hint) for hint in self.diagnostic.hints]
+        notes += [("fix", self.diagnostic.fix.title)] if self.diagnostic.fix else []
         if notes and self.marks:
             yield self._bar()
         for kind, text in notes:
@@ -168,18 +161,9 @@ class _Page:
         place = f"{escape(source.name)}:{lead.first}:{lead.start + 1}"
         return " " * self.gutter + self.style.gutter(arrow) + " " + place
 
-    def _excerpt(self, source: SourceFile, marks: list[Mark]) -> Iterator[str]:
-        excerpt = Excerpt(source, tuple(marks), self.diagnostic.severity, self.style, self.width)
-        yield self._bar()
-        for number, text in excerpt.rows():
-            yield self._bar(text, number)
-
-    def _bar(self, text: str = "", number: int | None = None, sign: str = "|") -> str:
+    def _bar(self, text: str = "", number: int | None = None) -> str:
         head = "" if number is None else str(number)
-        return (self.style.gutter(f"{head:>{self.gutter}} {sign}") + " " + text).rstrip()
-
-    def _fix_title(self) -> list[tuple[str, str]]:
-        return [("fix", self.diagnostic.fix.title)] if self.diagnostic.fix else []
+        return (self.style.gutter(f"{head:>{self.gutter}} |") + " " + text).rstrip()
 
     def _note(self, kind: str, text: str) -> Iterator[str]:
         lead = self.style.gutter(" " * self.gutter + " =") + " " + self.style.strong(f"{kind}: ")
@@ -346,8 +330,7 @@ def _place_in_words(span: Span, main: str) -> str:
 
 
 def _quoted(span: Span) -> str:
-    line = escape(span.source.line(span.line).strip())
-    return line if len(line) <= _LONGEST_COMPACT else line[: _LONGEST_COMPACT - 1] + "…"
+    return shortened(escape(span.source.line(span.line).strip()), _LONGEST_COMPACT)
 
 
 def _one_line(text: str) -> str:

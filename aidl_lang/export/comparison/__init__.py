@@ -22,6 +22,7 @@ from aidl_lang.export.comparison.changes import (
     GeometryChange,
     Move,
     Pose,
+    Sort,
     StructureChange,
     Value,
     Version,
@@ -87,11 +88,6 @@ class StructurePair:
     @property
     def items(self) -> list[GeometryPair | StructurePair]:
         return [*self.geometry, *self.structures]
-
-    def leaves(self) -> Iterator[GeometryPair]:
-        """Yields all geometry in it that is in both versions."""
-        for pair in self.walk():
-            yield from pair.geometry
 
     def follows(self, move: Move) -> bool:
         """True if most of its members moved by `move`."""
@@ -456,9 +452,9 @@ class _Walk:
         for child in pair.structures:
             yield from self.changes(child, move, settled=whole is not None)
         for vanished in pair.gone:
-            yield replace(_alone(vanished), sort="vanished", sizes=self._sizes_alone(vanished, 0))
+            yield self._alone(vanished, "vanished", self.before)
         for appeared in pair.new:
-            yield replace(_alone(appeared), sort="appeared", sizes=self._sizes_alone(appeared, 1))
+            yield self._alone(appeared, "appeared", self.after)
 
     def _majority(self, pair: StructurePair, expected: Move, is_root: bool) -> Move | None:
         """Returns the motion of most in a structure, if not `expected`; None for a root with what stayed."""
@@ -469,7 +465,7 @@ class _Walk:
     def _candidates(self, pair: StructurePair) -> list[Move]:
         """The most frequent motions of single things; turns get a place, for circles show only shifts."""
         votes: dict[tuple[int, ...], list[Move]] = {}
-        for move in (leaf.pose.shift() for leaf in pair.leaves()):
+        for move in (leaf.pose.shift() for inner in pair.walk() for leaf in inner.geometry):
             if move is not None and np.isfinite([move.dx, move.dy, move.turn]).all():
                 steps = (move.dx / self.tolerance, move.dy / self.tolerance, 1e5 * move.turn)
                 votes.setdefault((*(round(s / 100) for s in steps), move.mirrored), []).append(move)
@@ -489,10 +485,10 @@ class _Walk:
             )
         return changed(first, last, move, self.tolerance)
 
-    def _sizes_alone(self, s: SolvedStructure, side: int) -> Fields:
-        drawing = (self.before, self.after)[side].drawing
-        measured = sizes(s, drawing.regions.get(s.path))
-        return changed({}, measured) if side else changed(measured, {})
+    def _alone(self, s: SolvedStructure, sort: Sort, version: Version) -> StructureChange:
+        found = sizes(s, version.drawing.regions.get(s.path))
+        told = changed({}, found) if sort == "appeared" else changed(found, {})
+        return StructureChange(s.path, s.kind, sort, middle=_middle(s), sizes=told)
 
     def _geometry(self, pair: StructurePair, expected: Move, settled: bool) -> Iterator[GeometryChange]:
         for g in pair.geometry:
@@ -512,10 +508,6 @@ class _Walk:
             found = of_geometry(a, b, expected, self.tolerance) | found
         move = None if whole == expected else whole
         return GeometryChange(b.name, b.type, "changed", g.was, move, found, is_outline_changed=whole is None)
-
-
-def _alone(s: SolvedStructure) -> StructureChange:
-    return StructureChange(s.path, s.kind, middle=_middle(s))
 
 
 def _middle(s: SolvedStructure) -> Vec | None:

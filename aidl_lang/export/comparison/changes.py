@@ -6,13 +6,14 @@ import math
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import field, replace
 from functools import cached_property
-from typing import Any, Literal, TypeAlias
+from typing import Literal, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 from aidl_lang.common.prose import rounded
 from aidl_lang.common.records import record
+from aidl_lang.export.json import Json, contact
 from aidl_lang.geometry.boolean import Contact
 from aidl_lang.geometry.curves import FIELDS, Arc, Circle, Ellipse, Vec, point
 from aidl_lang.geometry.drawing import Drawing
@@ -315,37 +316,30 @@ class Comparison:
 
         return text(self)
 
-    def to_dict(self) -> dict[str, object]:
-        """Returns the comparison as plain dicts and lists, numbers to 12 digits."""
-        return to_dict(self)
+    def to_dict(self) -> Json:
+        """Returns plain dicts and lists, numbers to 12 digits; of a pair the first is from before."""
+        document: Json = rounded(
+            {
+                "aidl_diff": VERSION,
+                "units": "mm",
+                "equal": self.is_equal,
+                "status": self.status,
+                "dof": self.degrees,
+                "freed": self.freed,
+                "held": self.held,
+                "structures": [_structure(s) for s in self.structures],
+                "contacts": [
+                    {"a": c.a, "b": c.b, "before": _lie(c.before), "after": _lie(c.after)}
+                    for c in self.contacts
+                ],
+            }
+        )
+        return document
 
 
 # --- A comparison as plain dicts and lists, for programs.
 
 VERSION = 1
-Json = dict[str, Any]
-
-
-def to_dict(comparison: Comparison) -> Json:
-    """Returns a comparison as plain data. In every pair, the first value is from before, the second from
-    after; numbers have 12 digits.
-    """
-    document: Json = {
-        "aidl_diff": VERSION,
-        "units": "mm",
-        "equal": comparison.is_equal,
-        "status": list(comparison.status),
-        "dof": list(comparison.degrees),
-        "freed": list(comparison.freed),
-        "held": list(comparison.held),
-        "structures": [_structure(s) for s in comparison.structures],
-        "contacts": [
-            {"a": c.a, "b": c.b, "before": _contact(c.before), "after": _contact(c.after)}
-            for c in comparison.contacts
-        ],
-    }
-    result: Json = rounded(document)
-    return result
 
 
 def _structure(s: StructureChange) -> Json:
@@ -378,8 +372,5 @@ def _fields(fields: Fields) -> Mapping[str, list[object]]:
     return {name: list(pair) for name, pair in fields.items()}
 
 
-def _contact(contact: Contact | None) -> Json | None:
-    if contact is None:
-        return None
-    entry = {"relation": contact.relation, "gap": contact.gap, "area": contact.area}
-    return {name: value for name, value in entry.items() if value is not None}
+def _lie(pair: Contact | None) -> Json | None:
+    return None if pair is None else contact(pair, ("relation", "gap", "area"))

@@ -12,8 +12,20 @@ from collections.abc import Iterable, Iterator, Sequence
 import numpy as np
 
 from aidl_lang.export.comparison.changes import Comparison, StructureChange, Version
-from aidl_lang.export.marks import Area, Curves, Frame, Group, Ink, Mark, Picture, Text, polygon, widened
-from aidl_lang.geometry.curves import Bounds, Line, Piece, Vec, point, union_bounds
+from aidl_lang.export.marks import (
+    Area,
+    Curves,
+    Frame,
+    Group,
+    Ink,
+    Mark,
+    Picture,
+    Text,
+    arrowhead,
+    polygon,
+    widened,
+)
+from aidl_lang.geometry.curves import Bounds, Line, Piece, Vec, larger_side, point, union_bounds
 from aidl_lang.geometry.drawing import Stroke
 from aidl_lang.geometry.network import Network, with_finer_chords
 from aidl_lang.geometry.region import Face, Region, area, face_polygons, measure
@@ -32,17 +44,13 @@ def overlay(comparison: Comparison) -> Picture:
     """Draws a comparison."""
     before, after = comparison.before, comparison.after
     box = _box(before, after)
-    size = max(box[2] - box[0], box[3] - box[1]) or 1.0
+    size = larger_side(box) or 1.0
     shared = _shared_strokes(comparison)
     regions = parts([b.region for b in before.drawing.bodies], [b.region for b in after.drawing.bodies])
-    groups = [
-        *(Group(name, tuple(_filled(name, region, size))) for name, region in regions.items()),
-        *(
-            Group(f"{name}-outlines", tuple(_outlined(name, version, shared, size)))
-            for name, version in (("before", before), ("after", after))
-        ),
-        Group("moves", tuple(_arrows(comparison.structures, before, size))),
-    ]
+    groups = [Group(name, tuple(_filled(name, region, size))) for name, region in regions.items()]
+    for name, version in (("before", before), ("after", after)):
+        groups.append(Group(f"{name}-outlines", tuple(_outlined(name, version, shared, size))))
+    groups.append(Group("moves", tuple(_arrows(comparison.structures, before, size))))
     legend, below = _legend(regions, box, size)
     return Picture(widened(union_bounds([box, below]), MARGIN * size), (*groups, Group("legend", legend)))
 
@@ -155,12 +163,9 @@ def _arrow(at: Vec, to: Vec, size: float) -> Iterator[Mark]:
     length = math.dist(at, to)
     head = min(HEAD * size, 0.5 * length)
     x, y = (to[0] - at[0]) / length, (to[1] - at[1]) / length
-    neck = to[0] - head * x, to[1] - head * y
-    half = 0.35 * head
-    sides = (neck[0] - half * y, neck[1] + half * x), (neck[0] + half * y, neck[1] - half * x)
     ink = Ink(INKS["after"], LINE * size, is_round=True)
-    yield Curves((Line(at, neck),), ink, "move")
-    yield Area(polygon(to, *sides), ink.color, None, "move")
+    yield Curves((Line(at, (to[0] - head * x, to[1] - head * y)),), ink, "move")
+    yield Area(arrowhead(to, (x, y), head, 0.7 * head), ink.color, None, "move")
 
 
 def _legend(regions: dict[str, Region], box: Bounds, size: float) -> tuple[tuple[Mark, ...], Bounds]:

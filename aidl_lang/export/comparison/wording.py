@@ -42,12 +42,8 @@ def text(comparison: Comparison) -> str:
     if comparison.is_equal:
         return EQUAL
     root = comparison.after.model.root.path
-    blocks = [
-        (_MARKS[sort], path, lines)
-        for sort, path, lines in _gathered(
-            comparison.structures, lambda s: s.path, lambda s: _structure(s, comparison.size)
-        )
-    ]
+    told = _gathered(comparison.structures, lambda s: s.path, lambda s: _structure(s, comparison.size))
+    blocks = [(_MARKS[sort], path, lines) for sort, path, lines in told]
     contacts = list(_contacts(comparison.contacts, root))
     others = [("contacts", contacts), ("free to move", list(_freedom(comparison, root)))]
     if comparison.status[0] != comparison.status[1]:

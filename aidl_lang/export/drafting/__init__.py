@@ -25,7 +25,7 @@ from aidl_lang.export.drafting.tables import (
     Paper,
     Standard,
     Table,
-    lines,
+    outline,
     papers,
     scale_text,
     title_block,
@@ -115,7 +115,6 @@ def _spots(box: Bounds, pieces: Sequence[Piece]) -> Iterator[tuple[Vec, Vec]]:
 
 
 def _signs(view: View, factor: float) -> Iterator[Text]:
-    """Yields the signs of holes, beside them."""
     for hole in view.holes:
         (x, y), reach = hole.circle.center, 0.72 * hole.circle.radius + 0.8 / factor
         yield Text((x + reach, y + reach), hole.sign, SMALL / CAPITAL / factor, BLACK)
@@ -262,11 +261,8 @@ def _laid(content: Content, draft: Draft, standard: Standard) -> _Laid:
     if best is None:
         where = "any paper" if draft.paper is None else f"{choices[0].label} paper"
         at = f" at {scale_text(draft.scale)}" if draft.scale is not None else ""
-        raise ExportError(
-            "E0970",
-            f"`{content.subject.path}` does not fit on {where}{at} with its dimensions",
-            "leave out `--scale` and `--paper` to have them chosen",
-        )
+        message = f"`{content.subject.path}` does not fit on {where}{at} with its dimensions"
+        raise ExportError("E0970", message, "leave out `--scale` and `--paper` to have them chosen")
     return best
 
 
@@ -323,7 +319,13 @@ def _arranged(sizes: Sequence[tuple[float, float]], room: Bounds) -> list[Vec] |
 
 def _tables(content: Content) -> list[Table]:
     found = [Table("notes", ("Notes",), tuple((line,) for line in content.lines))] if content.lines else []
-    found += [_list_of_parts(content)] if content.items else []
+    if content.items:
+        rows = tuple(
+            (str(item.number), item.name, str(item.count), item.style.material or "", item.size)
+            for item in content.items
+        )
+        heads = ("Item", "Name", "Qty", "Material", "Size")
+        found.append(Table("parts", heads, rows, frozenset({0, 2})))
     return found + [_table_of_holes(view) for view in content.views if view.holes]
 
 
@@ -334,14 +336,6 @@ def _table_of_holes(view: View) -> Table:
     cells += [("", "", "", "")] * (count * _SIDE_BY_SIDE - len(cells))
     rows = tuple(tuple(chain(*cells[row::count])) for row in range(count))
     return Table("holes", ("Hole", "X", "Y", "⌀") * _SIDE_BY_SIDE, rows, frozenset(range(4 * _SIDE_BY_SIDE)))
-
-
-def _list_of_parts(content: Content) -> Table:
-    rows = tuple(
-        (str(item.number), item.name, str(item.count), item.style.material or "", item.size)
-        for item in content.items
-    )
-    return Table("parts", ("Item", "Name", "Qty", "Material", "Size"), rows, frozenset({0, 2}))
 
 
 def _title(job: Job, content: Content, draft: Draft, laid: _Laid, sheet: str) -> dict[str, str]:
@@ -385,8 +379,8 @@ def _plain(name: str) -> str:
 
 def _page(content: Content, laid: _Laid, title: Mapping[str, str], standard: Standard) -> Picture:
     left, bottom, right, top = laid.paper.frame
-    around = (left, bottom), (right, bottom), (right, top), (left, top)
-    frame = lines([*zip(around, (*around[1:], around[0]), strict=True)], 2 * WIDE, "frame")
+    corners = (left, bottom), (right, bottom), (right, top), (left, top)
+    frame = outline(*corners, width=2 * WIDE, role="frame")
     groups = [Group("frame", (frame,), {"class": "frame"})]
     for number, (corner, view) in enumerate(laid.views, 1):
         groups += view.at(corner, number)

@@ -8,11 +8,10 @@ from textwrap import wrap
 
 from aidl_lang.common.prose import fixed
 from aidl_lang.common.records import record
-from aidl_lang.export.dimension_marks import Pen, Sheet
-from aidl_lang.export.dimensioning import visible
+from aidl_lang.export.dimensioning import seen_on, visible
 from aidl_lang.geometry.boolean import Contacts
 from aidl_lang.geometry.curves import Circle, Piece, Vec, bounds, point, union_bounds
-from aidl_lang.geometry.dimensions import completed, dimensions, overall
+from aidl_lang.geometry.dimensions import completed, overall
 from aidl_lang.geometry.drawing import Body, Drawing, Stroke
 from aidl_lang.geometry.parts import engraved, gathered, shape_of
 from aidl_lang.geometry.solved import (
@@ -41,14 +40,10 @@ def said_of(model: SolvedModel, drawing: Drawing) -> tuple[Labels, Notes, list[s
     """Returns the circles of which something is said, with what stands in place of their diameter; notes on
     anything else, with its outline; and those that are too long for a place beside it.
     """
-    lines: list[str] = []
+    lines: dict[str, int] = {}
 
     def shortened(words: str) -> str:
-        if len(words) <= _BESIDE:
-            return words
-        line = next((k for k, known in enumerate(lines, 1) if known == words), len(lines) + 1)
-        lines[line - 1 :] = [words] if line > len(lines) else lines[line - 1 :]
-        return f"note {line}"
+        return words if len(words) <= _BESIDE else f"note {lines.setdefault(words, len(lines) + 1)}"
 
     bodies = {model.root.path, *(body.path for body in drawing.bodies)}
     drawn = {_middle(piece) for body in drawing.bodies for piece in body.region.pieces}
@@ -72,7 +67,7 @@ def said_of(model: SolvedModel, drawing: Drawing) -> tuple[Labels, Notes, list[s
             elif drawn.intersection(map(_middle, curves)) and (rest or own):
                 notes.append((shortened(", ".join([*rest, *own])), curves))
                 rest = []
-    long = [part for n, words in enumerate(lines, 1) for part in wrap(f"Note {n}: {words}", _LINE)]
+    long = [part for words, n in lines.items() for part in wrap(f"Note {n}: {words}", _LINE)]
     return labels, tuple(notes), long
 
 
@@ -209,21 +204,12 @@ def contents(model: SolvedModel, drawing: Drawing) -> list[Content]:
 
 
 def _view(model: SolvedModel, drawing: Drawing) -> View:
-    stated = visible(dimensions(model, drawing), model, Sheet(drawing, Pen(0.005 * drawing.size)))
+    stated = visible(model, drawing)
     filed = (g for g in model.root.walk_geometry() if g.type in _FILED)
     labels, notes, lines = said_of(model, drawing)
     done = completed(drawing, stated, (curve for g in filed for curve in g.curves()), labels)
     holes = tuple(_holes(done.holes, done.datum, labels))
-    return View(
-        "",
-        drawing,
-        done.groups,
-        free=done.free,
-        holes=holes,
-        datum=done.datum,
-        notes=notes,
-        lines=tuple(lines),
-    )
+    return View("", drawing, done.groups, (), done.free, holes, done.datum, notes, tuple(lines))
 
 
 def _holes(circles: Sequence[Circle], datum: Vec, labels: Labels) -> Iterator[Hole]:
@@ -283,7 +269,7 @@ def _only(drawing: Drawing, bodies: Sequence[Body], strokes: Sequence[Stroke]) -
 def _of_body(model: SolvedModel, alone: Drawing, others: Sequence[str]) -> SolvedModel:
     """Returns the model with the sizes that concern the one body of a drawing."""
     path = alone.bodies[0].path
-    sheet = Sheet(alone, Pen(0.005 * alone.size))
+    sheet = seen_on(alone)
     centers = [p.center for p in alone.bodies[0].region.pieces if isinstance(p, Circle)]
 
     def is_there(points: Sequence[Vec]) -> bool:

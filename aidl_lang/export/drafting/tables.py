@@ -7,21 +7,14 @@ from dataclasses import field
 
 from aidl_lang.common.materials import PAPERS
 from aidl_lang.common.records import record
-from aidl_lang.export.marks import Curves, Group, Ink, Mark, Text
+from aidl_lang.export.marks import Curves, Group, Ink, Mark, Text, polygon
 from aidl_lang.geometry.curves import Bounds, Circle, Line, Vec
 
 # --- Paper, frames and scales of technical drawings: ISO 5457 and 5455, and what is usual beside them.
 
-SCALES = tuple(
-    sorted(
-        (
-            *((factor * ten, 1) for ten in (1, 10) for factor in (2, 5)),
-            (10, 1),
-            (1, 1),
-            *((1, factor * ten) for ten in (1, 10, 100, 1000) for factor in (2, 5, 10)),
-        ),
-        key=lambda scale: scale[1] / scale[0],
-    )
+SCALES = (
+    *((factor, 1) for factor in (50, 20, 10, 5, 2, 1)),
+    *((1, factor * ten) for ten in (1, 10, 100, 1000) for factor in (2, 5, 10)),
 )
 """The standard series, the largest first: millimetres on paper, and in the part."""
 
@@ -117,8 +110,12 @@ def written(
     return Text(at, words, height / CAPITAL, BLACK, anchor, halo=False)
 
 
-def lines(segments: Sequence[tuple[Vec, Vec]], width: float = NARROW, role: str = "") -> Curves:
-    return Curves(tuple(Line(*ends) for ends in segments), Ink(BLACK, width), role)
+def lines(segments: Sequence[tuple[Vec, Vec]]) -> Curves:
+    return Curves(tuple(Line(*ends) for ends in segments), Ink(BLACK, NARROW))
+
+
+def outline(*corners: Vec, width: float = NARROW, role: str = "") -> Curves:
+    return Curves(polygon(*corners).outer.pieces, Ink(BLACK, width), role)
 
 
 # --- Tables of a drawing sheet: the title block (ISO 7200), the list of parts, the list of holes.
@@ -169,10 +166,8 @@ class Table:
             for k in range(len(self.heads))
         ]
         total = sum(wanted)
-        # What is left over goes to the widest; too much is taken off all alike.
-        if total > WIDTH:
-            return [WIDTH * w / total for w in wanted]
-        if len(self.numeric) == len(wanted):
+        # What is left over goes to the widest, if that has words; too much is taken off all alike.
+        if total > WIDTH or len(self.numeric) == len(wanted):
             return [WIDTH * w / total for w in wanted]
         wanted[wanted.index(max(wanted))] += WIDTH - total
         return wanted
@@ -220,9 +215,9 @@ def title_block(title: Mapping[str, str], left: float, bottom: float, is_first_a
                 marks.append(written(value, (x + _AIR, top - _CELL + 1.3), height, room=room))
             x += width
     marks.append(lines(segments))
-    around = (left, bottom), (left + WIDTH, bottom), (left + WIDTH, top + _CELL * 2), (left, top + _CELL * 2)
-    marks.append(lines([*zip(around, (*around[1:], around[0]), strict=True)], WIDE))
-    return Group("title-block", tuple(m for m in marks if m), {"class": "title-block"})
+    right, top = left + WIDTH, top + _CELL * 2
+    marks.append(outline((left, bottom), (right, bottom), (right, top), (left, top), width=WIDE))
+    return Group("title-block", tuple(marks), {"class": "title-block"})
 
 
 def _projection(middle: Vec, is_first_angle: bool) -> Iterator[Mark]:
@@ -230,16 +225,9 @@ def _projection(middle: Vec, is_first_angle: bool) -> Iterator[Mark]:
     x, y = middle
     side, front = (-4.5, 4.5) if is_first_angle else (4.5, -4.5)
     a, b, half = 1.5, 3.0, 3.0
-    corners = (
-        (x + side - half, y - a),
-        (x + side + half, y - b),
-        (x + side + half, y + b),
-        (x + side - half, y + a),
-    )
-    yield lines([*zip(corners, (*corners[1:], corners[0]), strict=True)])
-    center = x + front, y
-    yield Curves((Circle(center, a),), Ink(BLACK, NARROW))
-    yield Curves((Circle(center, b),), Ink(BLACK, NARROW))
-    axis = Ink(BLACK, NARROW, (2.0, 0.6, 0.4, 0.6))
-    yield Curves(lines([((x - 9, y), (x + 9, y))]).pieces, axis)
-    yield Curves(lines([((x + front, y - 4), (x + front, y + 4))]).pieces, axis)
+    left, right = x + side - half, x + side + half
+    yield outline((left, y - a), (right, y - b), (right, y + b), (left, y + a))
+    for radius in (a, b):
+        yield Curves((Circle((x + front, y), radius),), Ink(BLACK, NARROW))
+    for axis in (Line((x - 9, y), (x + 9, y)), Line((x + front, y - 4), (x + front, y + 4))):
+        yield Curves((axis,), Ink(BLACK, NARROW, (2.0, 0.6, 0.4, 0.6)))

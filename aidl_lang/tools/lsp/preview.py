@@ -26,8 +26,8 @@ from aidl_lang.common.records import record
 from aidl_lang.common.running import Cancelled
 from aidl_lang.export import FORMATS, OFFERED
 from aidl_lang.export.job import Exported, ExportError, Options, file_names
+from aidl_lang.export.marks import THEMES
 from aidl_lang.export.profiles import PROFILES
-from aidl_lang.export.themes import THEMES
 from aidl_lang.tools.ide.dragging import Handle, drag, handles
 from aidl_lang.tools.ide.preview import layered, preview, tried
 from aidl_lang.tools.ide.preview.elements import Preview, Writer, set_knob, worked_out
