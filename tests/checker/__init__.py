@@ -1,1 +1,0 @@
-"""A second opinion on solved models: every constraint evaluated on the exported coordinates alone."""
