@@ -25,9 +25,6 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-import ezdxf
-from pygls.exceptions import JsonRpcInternalError
-
 from aidl_lang import pipeline
 from aidl_lang.common.diagnostics import AidlError
 from aidl_lang.common.drawings import DrawingError, outlines
@@ -35,8 +32,6 @@ from aidl_lang.common.font_files import FontError, FontFile
 from aidl_lang.common.running import OutOfTime, limited_to
 from aidl_lang.common.source import SourceFile
 from aidl_lang.common.world import MemoryWorld, Reads
-from aidl_lang.tools.lsp import serve
-from aidl_lang.tools.lsp.serve import make
 from aidl_lang.tools.sweeping.plan import read_table
 from tests.documents import ROOT
 from tests.fuzz.minimise import minimised
@@ -129,6 +124,8 @@ _CSV = b'width,name,note\n60,Ada,"one\ntwo"\n80,"B, ""b""",\n,,\n6cm,-5,=1\n'
 
 
 def _dxf(version: str) -> bytes:
+    import ezdxf
+
     document = ezdxf.new(version)
     block = document.blocks.new("B")
     block.add_circle((1, 2), 3)
@@ -231,7 +228,10 @@ def _rpc(data: bytes) -> object:
 
 async def _served(data: bytes) -> None:
     """Hands the bytes of a session to a server; raises if it crashes, or answers nothing after that."""
-    server, answers, crashes = make(), list[Any](), list[BaseException]()
+
+    from aidl_lang.tools.lsp import serve
+
+    server, answers, crashes = serve.make(), list[Any](), list[BaseException]()
     server.crashed = crashes.append  # type: ignore[method-assign]
     server.start()
     keeping = type("Keeping", (), {"write": lambda self, said: answers.append(json.loads(said))})
@@ -279,7 +279,9 @@ def finding(kind: str, data: bytes) -> str:
         return f"more than {_SECONDS:g} s"
     except Exception as error:  # noqa: BLE001 (what breaks, whatever it is, is the finding)
         place = traceback.extract_tb(error.__traceback__)[-1]
-        said = f": {error}" if isinstance(error, JsonRpcInternalError) else ""  # which tells of another
+        said = (
+            f": {error}" if type(error).__name__ == "JsonRpcInternalError" else ""
+        )  # which tells of another
         return f"{type(error).__name__} in {Path(place.filename).name}:{place.lineno}{said}"
     finally:
         faulthandler.cancel_dump_traceback_later()
