@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.amount import large
+from tests.amount import large, tried
 from tests.compiled import lighter
 from tests.fuzz.judge import Judge
 from tests.fuzz.minimise import minimised
@@ -88,6 +88,12 @@ SLOW = {"many names, much alike", "constraints doubled", "many errors", "all of 
 )
 def test_what_is_large_ends_too(text: str) -> None:
     assert Judge().finding(text) is None
+
+
+@pytest.mark.parametrize("seed", range(tried(150)))
+def test_whatever_is_written_ends_with_an_answer(seed: int) -> None:
+    """Soups of tokens, programs with something changed, random calls and assemblies."""
+    assert Judge().finding(program(seed)[1]) is None
 
 
 def test_a_program_follows_from_its_seed() -> None:

@@ -55,8 +55,15 @@ class _Thing:
 
     @property
     def declared(self) -> str:
+        return self.placed(self.x, self.y)
+
+    def placed(self, x: float, y: float, is_inside: bool = False) -> str:
+        """Its declaration with another first guess of its place; `is_inside` a structure."""
         size = f"width: fixed({self.w:g}), height: fixed({self.h:g})"
-        return f"{self.name} = rectangle(center: ({self.x:g}, {self.y:g}), {size})"
+        if is_inside:
+            body = f"body = rectangle(center: fixed((0, 0)), {size})"
+            return f"drawing {self.name} at ({x:g}, {y:g}) {{ {body} }}"
+        return f"{self.name} = rectangle(center: ({x:g}, {y:g}), {size})"
 
 
 def _number(value: float) -> str:
@@ -146,6 +153,30 @@ def _are_tied(a: str, b: str, axis: str, stated: Iterable[_Stated]) -> bool:
     while further := [tie for tie in ties if tie & reached and not tie <= reached]:
         reached.update(*further)
     return b in reached
+
+
+def picture(seed: int, off: float) -> tuple[Program, dict[str, tuple[float, float]]]:
+    """What is true of a drawing, with first guesses that are so far off at most; and the true centres."""
+    things, stated = _true_statements(seed)
+    rng = random.Random(seed)
+    declared = [
+        thing.placed(
+            thing.x + rng.uniform(-off, off), thing.y + rng.uniform(-off, off), is_inside=rng.random() < 0.5
+        )
+        for thing in things
+    ]
+    truth = {thing.name: (thing.x, thing.y) for thing in things}
+    return Program(tuple(declared), tuple(each.says(each.value) for each in stated)), truth
+
+
+def centers(found: pipeline.Compiled) -> dict[str, tuple[float, float]]:
+    """Of the rectangles that are drawn, by their names or by those of what they are in."""
+    assert found.model is not None
+    return {
+        g.path.split(".")[1]: g.values["center"]
+        for g in found.model.root.walk_geometry()
+        if g.type == "rectangle"
+    }
 
 
 # --- Judgement -------------------------------------------------------------------------------------
