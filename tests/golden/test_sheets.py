@@ -1,8 +1,8 @@
 """What stands on drawing sheets: of the workshop's examples and of small parts, against `sheets.txt`.
 
-A line is a program, or the name of one in the workshop; under it, for each of its sheets, stand the dimensions
-and the cells of the table of holes. `make accept` writes down what comes. From what stands there each part can
-be made: nothing is left out, and nothing is said twice. Look that this stays so before accepting.
+A line is a program, or the name of one in the workshop; under it, for each of its sheets, stand the
+dimensions and the cells of the table of holes. `make accept` writes down what comes. From what stands there
+each part can be made: nothing is left out, and nothing is said twice. Look that this stays so.
 """
 
 from __future__ import annotations
@@ -30,9 +30,9 @@ def rows() -> dict[str, list[str]]:
     found: dict[str, list[str]] = {}
     for line in PAGE.read_text("utf-8").splitlines():
         if line.startswith("    "):
-            found[program].append(line.strip())
+            found[next(reversed(found))].append(line.strip())
         else:
-            found[program := line] = []
+            found[line] = []
     return found
 
 
