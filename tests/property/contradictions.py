@@ -1,16 +1,9 @@
-"""Programs that are true of a drawing, and the same with one number or one first guess made wrong.
-
-    python -m tests.property.contradictions 500
-
-tells how many of so many wrong programs were explained rightly.
-"""
+"""Programs that are true of a drawing, and the same with one number or one first guess made wrong."""
 
 from __future__ import annotations
 
 import math
 import random
-import sys
-from collections import Counter
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 
@@ -260,22 +253,3 @@ def guess_fault(program: Program) -> str | None:
     if codes == ["E0602"] and any(d.fix for d in found.diagnostics):
         return None
     return f"{codes}"
-
-
-def main(count: int) -> None:
-    told: Counter[str] = Counter()
-    wrong = [p for p in map(broken_program, range(4 * count)) if p is not None][:count]
-    failed = 0
-    for program in wrong:
-        found = list(faults(program))
-        failed += bool(found)
-        told.update(found)
-        if found:
-            print(program.text, *found, sep="\n", end="\n\n")
-    print(f"{len(wrong)} contradictions, {failed} explained wrongly: {told.most_common(6)}")
-    answers = Counter(filter(None, (guess_fault(badly_guessed(seed)) for seed in range(count))))
-    print(f"{count} bad guesses: {sum(answers.values())} neither solved nor helped: {answers.most_common(4)}")
-
-
-if __name__ == "__main__":
-    main(int(sys.argv[1]) if len(sys.argv) > 1 else 100)
