@@ -21,22 +21,12 @@ from tests.relations import test_corpus as corpus
 
 ENTRIES = list(reference().entries.values())
 
-FOR_THE_LIBRARY = {
-    "glyphs",
-    "ink",
-    "lettered",
-    "traced",
-    "traced_part",
-    "where",
-    "shown",
-    "sizes",
-    "convex_corners",
-    "refuse",
-    "channels",
-    "outline_clearance",
-    "point_at",
-    "way_between",
-}
+FOR_THE_LIBRARY = set(
+    """
+    glyphs ink lettered traced traced_part where shown sizes convex_corners
+    refuse channels outline_clearance point_at way_between
+    """.split()
+)
 """Builtins that only the library's own definitions use: they have no section in `stdlib/docs`."""
 
 
