@@ -8,7 +8,7 @@ import pytest
 
 from tests.amount import large, tried
 from tests.compiled import lighter
-from tests.fuzz.judge import Judge
+from tests.fuzz.judge import finding
 from tests.fuzz.minimise import minimised
 from tests.fuzz.sources import FOUND, program
 
@@ -73,7 +73,7 @@ DEAR = {
 
 @pytest.mark.parametrize("path", lighter(WRITTEN, DEAR))
 def test_nothing_breaks_any_more(path: Path) -> None:
-    assert Judge().finding(path.read_text("utf-8")) is None
+    assert finding(path.read_text("utf-8")) is None
 
 
 SLOW = {"many names, much alike", "constraints doubled", "many errors", "all of many boxes meet"}
@@ -87,13 +87,13 @@ SLOW = {"many names, much alike", "constraints doubled", "many errors", "all of 
     ],
 )
 def test_what_is_large_ends_too(text: str) -> None:
-    assert Judge().finding(text) is None
+    assert finding(text) is None
 
 
 @pytest.mark.parametrize("seed", range(tried(150)))
 def test_whatever_is_written_ends_with_an_answer(seed: int) -> None:
     """Soups of tokens, programs with something changed, random calls and assemblies."""
-    assert Judge().finding(program(seed)[1]) is None
+    assert finding(program(seed)[1]) is None
 
 
 def test_a_program_follows_from_its_seed() -> None:
