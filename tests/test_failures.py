@@ -42,10 +42,10 @@ def failures_of(text: str) -> list[Diagnostic]:
 
 
 CASES = [
-    pytest.param(block, id=block.place, marks=[pytest.mark.slow] if k % 4 else [])
+    pytest.param(block, id=block.place, marks=[pytest.mark.slow] if k % 8 else [])
     for k, block in enumerate(UNSOLVABLE)
 ]
-"""A quarter of them on every run; the specs themselves hold every message, and apply every fix by itself."""
+"""An eighth of them on every run; the specs themselves hold every message, and apply every fix by itself."""
 
 
 def replacements(text: str) -> Iterator[str]:
@@ -72,8 +72,8 @@ def test_what_would_fit_fits(block: Block) -> None:
 
 
 def test_it_is_said_often_what_would_fit() -> None:
-    asked = [block.text for block in UNSOLVABLE[::4] if "for " not in block.text]
-    assert sum(1 for text in asked for _ in replacements(text)) > 10
+    asked = [block.text for block in UNSOLVABLE[::8] if "for " not in block.text]
+    assert sum(1 for text in asked for _ in replacements(text)) > 5
 
 
 TRIANGLE = """drawing d {
