@@ -205,6 +205,48 @@ def test_an_assembly_has_a_list_of_parts_views_and_a_sheet_for_each_part():
     assert values(found[3]) == {"282", "80"}
 
 
+def test_the_fence_bracket_can_be_made_from_its_sheet():
+    (page,) = pages((ROOT / "examples" / "workshop" / "fence_bracket.aidl").read_text("utf-8"))
+    texts_ = [m.text for g in dimension_groups(page) for m in g.marks if isinstance(m, Text)]
+    assert sorted(texts_) == sorted(
+        ["120", "150", "40", "40", "20", "14", "45", "2× 24", "9", "R8", "10", "20", "60", "40", "4× ⌀5.5"]
+    )
+
+
+def test_the_flange_can_be_made_from_its_sheet():
+    (page,) = pages((ROOT / "examples" / "workshop" / "flange.aidl").read_text("utf-8"))
+    assert values(page) == {"⌀140", "⌀44", "⌀100", "6× ⌀14"}
+    assert "12 mm" in words(page)
+
+
+@pytest.mark.parametrize(
+    ("body", "wanted"),
+    [
+        # Nothing but a literal tells where the hole is.
+        ("b = rectangle(width: 80, height: 50) hole e { c = circle(center: (-10, 5), radius: 4) }", {"30"}),
+        # Symmetric: from hole to hole, not from the edge.
+        (
+            "b = rectangle(width: 80, height: 50)\n"
+            "for s in [-1, 1] { hole e[s] { c = circle(center: fixed((25 * s, 0)), radius: 4) } }",
+            {"50", "2× ⌀8"},
+        ),
+        # A step: neither of its edges is a size of the shape.
+        ("b = polygon([(0, 0), (60, 0), (60, 20), (35, 20), (35, 45), (0, 45)])", {"60", "45", "35", "20"}),
+        # Holes at unequal steps on a circle are placed one by one.
+        (
+            "b = circle(radius: 50)\nfor i, a in enumerate([0, 50, 200]) {"
+            " hole e[i] { c = circle(center: fixed(polar(30, a * 1deg)), radius: 4) } }",
+            {"3× ⌀8", "⌀100"},
+        ),
+        # A slanted edge: both its ends.
+        ("b = polygon([(0, 0), (60, 0), (40, 30), (0, 30)])", {"60", "30", "40"}),
+    ],
+)
+def test_what_the_program_does_not_state_is_added(body: str, wanted: set[str]):
+    (page,) = pages(f"solid s {{ {body} }}")
+    assert wanted <= values(page)
+
+
 def test_the_values_are_those_of_the_solved_model():
     (page,) = pages((ROOT / "examples" / "motor_bracket.aidl").read_text("utf-8"))
     for group in dimension_groups(page):
