@@ -15,9 +15,9 @@ from aidl_dev.reference.pages import image
 from aidl_lang.checking import builtins, library
 from aidl_lang.export import FORMATS
 from aidl_lang.tools.reference.collect import reference
+from tests.checker import test_corpus as corpus
 from tests.documents import ROOT
 from tests.property import test_shapes as shapes
-from tests.relations import test_corpus as corpus
 
 ENTRIES = list(reference().entries.values())
 
@@ -65,7 +65,7 @@ def _stale() -> Iterator[str]:
 
 def _untried() -> Iterator[str]:
     for name in sorted(corpus.unused()):
-        yield f"`{name}` is in no program of `tests/relations/corpus`: use it in one"
+        yield f"`{name}` is in no program of `tests/checker/corpus`: use it in one"
     for call in shapes.unmeasured():
         yield f"`{call}` has no area and perimeter in `tests/property/shapes.md`"
 

@@ -1,4 +1,4 @@
-"""Constraints are satisfied from random first guesses, judged by the residuals of the document.
+"""Constraints are satisfied from random first guesses, judged by the outside check.
 
 The trials of a constraint are drawings of one program, each with its own random geometry and one constraint.
 """
@@ -14,6 +14,7 @@ import pytest
 
 import aidl_lang
 from tests.amount import tried
+from tests.checker.checking import check
 
 TRIALS = tried(60)
 BATCH = min(25, TRIALS)
@@ -66,8 +67,10 @@ def test_a_constraint_holds_from_random_guesses(statement: str) -> None:
     for _ in range(TRIALS // BATCH):
         text = trials(statement, names, chance)
         document = json.loads(aidl_lang.compile(text).to_json())
-        assert len({c["path"] for c in document["constraints"]}) == BATCH
-        wrong = {c["path"] for c in document["constraints"] if not c["satisfied"]}
+        findings = [f for f in check(text, document) if f.kind == "constraint"]
+        assert len(findings) == BATCH
+        wrong = {f.path for f in findings if not f.holds}
+        assert wrong == {c["path"] for c in document["constraints"] if not c["satisfied"]}
         assert (document["status"] == "solved") == (not wrong)
         held += BATCH - len(wrong)
     assert held >= ENOUGH * TRIALS

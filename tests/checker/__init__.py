@@ -1,0 +1,1 @@
+"""A second opinion on solved models: every constraint evaluated on the exported coordinates alone."""
