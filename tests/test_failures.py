@@ -1,4 +1,4 @@
-"""What messages about conflicts promise: every fix mends its program, and what would fit fits."""
+"""What messages about conflicts promise: what would fit fits."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from functools import cache
 import pytest
 
 from aidl_lang import pipeline
-from aidl_lang.common.diagnostics import Diagnostic, apply_fixes
+from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.render import render, to_dict
 from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.explaining.failures import _follows
@@ -42,25 +42,10 @@ def failures_of(text: str) -> list[Diagnostic]:
 
 
 CASES = [
-    pytest.param(block, id=block.place, marks=[pytest.mark.slow] if k % 4 else [])
+    pytest.param(block, id=block.place, marks=[pytest.mark.slow] if k % 8 else [])
     for k, block in enumerate(UNSOLVABLE)
 ]
-"""A quarter of them on every run; the specs themselves hold every message, and apply every fix by itself."""
-
-
-@pytest.mark.parametrize("block", CASES)
-def test_every_fix_mends_its_program(block: Block) -> None:
-    failures = failures_of(block.text)
-    assert failures
-    assert {d.code for d in failures} <= {"E0601", "E0605"}
-    if "drawing washer(" in block.text:
-        assert [d.fix for d in failures] == [None]  # it would change other instances as well
-        return
-    source = failures[0].span.source if failures[0].span else None
-    assert source is not None
-    text, applied = apply_fixes(source, failures)
-    assert applied == len(failures)
-    assert compiled(text).status == "solved"
+"""An eighth of them on every run; the specs themselves hold every message, and apply every fix by itself."""
 
 
 def replacements(text: str) -> Iterator[str]:
@@ -87,8 +72,8 @@ def test_what_would_fit_fits(block: Block) -> None:
 
 
 def test_it_is_said_often_what_would_fit() -> None:
-    asked = [block.text for block in UNSOLVABLE[::4] if "for " not in block.text]
-    assert sum(1 for text in asked for _ in replacements(text)) > 10
+    asked = [block.text for block in UNSOLVABLE[::8] if "for " not in block.text]
+    assert sum(1 for text in asked for _ in replacements(text)) > 5
 
 
 TRIANGLE = """drawing d {

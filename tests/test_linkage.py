@@ -11,12 +11,12 @@ from pathlib import Path
 import ezdxf
 import numpy as np
 import pytest
-import trimesh
 
 from aidl_lang import pipeline
 from aidl_lang.common.source import SourceFile
 from aidl_lang.compiled import Compiled
 from aidl_lang.export.job import Options
+from tests.export.readers import read_meshes, united
 
 FILE = Path(__file__).parents[1] / "examples" / "workshop" / "linkage.aidl"
 CRANK, COUPLER, ROCKER, BASE = 40.0, 110.0, 80.0, 100.0
@@ -90,8 +90,7 @@ def test_the_sheets_have_every_part_once() -> None:
 
 
 def test_no_two_bodies_fill_the_same_place() -> None:
-    scene = trimesh.load(io.BytesIO(linkage().export(".stl")), file_type="stl")
-    bodies = dict(scene.geometry)
+    bodies = read_meshes(linkage().export(".stl"), ".stl")
     assert len(bodies) == 8
     heights = {name.removeprefix("linkage."): body.bounds[:, 2].tolist() for name, body in bodies.items()}
     assert heights["base"] == pytest.approx([0, PLY])
@@ -100,5 +99,5 @@ def test_no_two_bodies_fill_the_same_place() -> None:
     assert heights["crank_pivot"] == pytest.approx([0, 2 * PLY])
     assert heights["rocker_pin"] == pytest.approx([PLY, 3 * PLY])
     assert all(body.is_watertight for body in bodies.values())
-    whole = trimesh.boolean.union(list(bodies.values()), engine="manifold")
-    assert whole.volume == pytest.approx(sum(body.volume for body in bodies.values()), rel=1e-6)
+    volume = sum(body.volume for body in bodies.values())
+    assert united(bodies.values()).volume == pytest.approx(volume, rel=1e-6)

@@ -6,7 +6,6 @@ import warnings
 
 import numpy as np
 import pytest
-from scipy import stats
 
 from aidl_eval.statistics import RESAMPLES, SEED, Case, by_prompt, compared, holm, interval
 
@@ -16,6 +15,8 @@ def cases(*values: float, prompt: str = "") -> list[Case]:
 
 
 def test_interval_as_scipy_draws_it() -> None:
+    from scipy import stats
+
     values = [3.0, 1.0, 4.0, 1.0, 5.0, 9.0, 2.0, 6.0]
     expected = stats.bootstrap(
         (values,), np.mean, n_resamples=RESAMPLES, method="percentile", rng=np.random.default_rng(SEED)
@@ -65,6 +66,8 @@ def test_comparison_worked_out_by_hand() -> None:
 
 def test_comparison_agrees_with_wilcoxon() -> None:
     """Where differences are their own ranks the permutation test is Wilcoxon's."""
+    from scipy import stats
+
     first = {f"p{n}": float(d) for n, d in enumerate((1, 2, -3, 4, 5, 6, 7, -8, 9, 10))}
     found = compared(first, dict.fromkeys(first, 0.0))
     assert found is not None
@@ -72,6 +75,8 @@ def test_comparison_agrees_with_wilcoxon() -> None:
 
 
 def test_many_prompts_are_compared_at_random_and_alike_each_time() -> None:
+    from scipy import stats
+
     first = {f"p{n}": (-1.0) ** n * n + 4 for n in range(36)}
     with warnings.catch_warnings():
         warnings.simplefilter("error")

@@ -23,7 +23,6 @@ from aidl_lang.tools.cli import main
 from tests.agents.test_tools import BOLT, CONFLICT, IMPORTS, PLATE, TELEPHONE
 from tests.documents import ROOT
 
-mcp = pytest.importorskip("mcp")
 COMMAND = [sys.executable, "-m", "aidl_lang", "mcp"]
 
 
@@ -42,6 +41,7 @@ class Session:
 
 @contextmanager
 def connected(server: Any) -> Iterator[Session]:
+    mcp = pytest.importorskip("mcp")
     with (
         anyio.from_thread.start_blocking_portal() as portal,
         portal.wrap_async_context_manager(mcp.Client(server, read_timeout_seconds=120)) as client,
@@ -50,7 +50,7 @@ def connected(server: Any) -> Iterator[Session]:
 
 
 def command(*arguments: str) -> Any:
-    return mcp.StdioServerParameters(
+    return pytest.importorskip("mcp").StdioServerParameters(
         command=COMMAND[0], args=[*COMMAND[1:], *arguments], env={"PYTHONPATH": str(ROOT)}
     )
 
@@ -136,7 +136,7 @@ def test_texts_to_read(session: Session) -> None:
     ["aidl://diagnostics/E9999", "aidl://reference/qqqq", "aidl://examples/..%2F..%2FREADME", "aidl://x"],
 )
 def test_texts_that_there_are_not(session: Session, uri: str) -> None:
-    with pytest.raises(mcp.MCPError):
+    with pytest.raises(pytest.importorskip("mcp").MCPError):
         session("read_resource", uri)
 
 

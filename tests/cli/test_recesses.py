@@ -9,10 +9,9 @@ from pathlib import Path
 
 import ezdxf
 import pytest
-import trimesh
 
 from tests.commands import Result
-from tests.export import step_reading
+from tests.export.readers import read_mesh, read_step
 
 Aidl = Callable[..., Result]
 
@@ -50,17 +49,17 @@ def test_solids_are_sunk_from_the_face_that_is_seen(aidl: Aidl, folder: Path, mo
     )
     assert result.code == 0
     volume = 80 * 30 * 6 - taken(6)
-    (part,) = step_reading.read((folder / "p.step").read_bytes(), folder).parts
+    (part,) = read_step((folder / "p.step").read_bytes(), folder).parts
     assert part.is_valid
     assert part.is_closed
     assert part.volume == pytest.approx(volume, rel=1e-9)
     for name in ("p.stl", "p.3mf"):
-        mesh = trimesh.load_mesh(folder / name)
+        mesh = read_mesh(folder / name)
         assert mesh.is_watertight
         assert mesh.volume == pytest.approx(volume, rel=1e-4)
     # The floor of the pocket is 2 mm below the face that is seen: above, or in front.
     across, along = (1, 2) if not more else (2, 1)
-    corner = trimesh.load_mesh(folder / "p.stl").vertices.round(3)
+    corner = read_mesh(folder / "p.stl").vertices.round(3)
     corner = corner[(corner[:, 0] == 20) & (abs(corner[:, across]) == 5)]
     assert set(corner[:, along]) == ({4, 6} if not more else {0, 2})
 
@@ -115,7 +114,7 @@ def test_a_hole_of_an_assembly_is_sunk_into_all_its_parts(aidl: Aidl, folder: Pa
         }"""
     )
     assert aidl("compile", "p.aidl", "-o", "p.step").code == 0
-    parts = step_reading.read((folder / "p.step").read_bytes(), folder).parts
+    parts = read_step((folder / "p.step").read_bytes(), folder).parts
     assert [part.volume for part in parts] == pytest.approx([20 * 20 * 6 - 10 * 5 * 2] * 2)
 
 
@@ -138,7 +137,7 @@ def test_what_is_sunk_in_a_hole_is_told_and_mended(aidl: Aidl, folder: Path) -> 
         'counterbore("m3") at (0, 0)', 'counterbore("m3", center: (0, 0))'
     )
     assert aidl("compile", "p.aidl", "-o", "p.step").code == 0
-    (part,) = step_reading.read((folder / "p.step").read_bytes(), folder).parts
+    (part,) = read_step((folder / "p.step").read_bytes(), folder).parts
     assert part.volume == pytest.approx(80 * 30 * 6 - taken(6), rel=1e-9)
 
 

@@ -13,12 +13,12 @@ from pathlib import Path
 import ezdxf
 import pypdfium2
 import pytest
-import trimesh
 from shapely import LineString, Polygon, unary_union
 
 from aidl_lang import AidlError
 from tests import compiled
 from tests.commands import Result
+from tests.export.readers import read_mesh
 
 Aidl = Callable[..., Result]
 
@@ -310,7 +310,7 @@ def test_one_file_for_each_part_in_every_format(aidl: Aidl, box: Path) -> None:
     ]
     for name, volume in (("s", 3 * 4685.841), ("strip", 3600), ("lid", 3 * 2827.433)):
         for suffix in ("stl", "3mf"):
-            mesh = trimesh.load_mesh(box / "parts" / f"{name}.{suffix}")
+            mesh = read_mesh(box / "parts" / f"{name}.{suffix}")
             assert mesh.is_watertight
             assert mesh.volume == pytest.approx(volume, rel=1e-3)
             assert mesh.bounds[0] == pytest.approx([0, 0, 0], abs=0.01)
@@ -339,7 +339,7 @@ def test_parts_that_stand_are_written_flat(aidl: Aidl, folder: Path) -> None:
         "solid p at fixed((70, 80)) { r = rectangle(center: fixed((0, 0)), width: 20, height: 10) } }"
     )
     aidl("compile", "-", "-o", "{part}.stl", stdin=text)
-    mesh = trimesh.load_mesh(folder / "p.stl")
+    mesh = read_mesh(folder / "p.stl")
     assert mesh.bounds.tolist() == [[0, 0, 0], [20, 10, 4]]
 
 

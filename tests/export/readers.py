@@ -12,6 +12,7 @@ import re
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -282,3 +283,32 @@ def _cubic(*points: Any) -> Curve:
         return np.stack((s**3, 3 * s * s * t, 3 * s * t * t, t**3), axis=1) @ control
 
     return curve
+
+
+# --- Bodies: readers that take seconds to load --------------------------------------------------------
+
+
+def read_step(data: bytes, folder: Path) -> Any:
+    """The `StepFile` that Open CASCADE reads."""
+    from tests.export.step_reading import read
+
+    return read(data, folder)
+
+
+def read_meshes(data: bytes, suffix: str) -> dict[str, Any]:
+    """The bodies of an STL or a 3MF by name."""
+    import trimesh
+
+    return dict(trimesh.load_scene(io.BytesIO(data), file_type=suffix.removeprefix(".")).geometry)
+
+
+def read_mesh(path: Path) -> Any:
+    """The one body of such a file."""
+    (mesh,) = read_meshes(path.read_bytes(), path.suffix).values()
+    return mesh
+
+
+def united(meshes: Iterable[Any]) -> Any:
+    import trimesh
+
+    return trimesh.boolean.union(list(meshes), engine="manifold")

@@ -6,7 +6,6 @@ import io
 import json
 import math
 from collections import Counter
-from pathlib import Path
 from typing import Any
 
 import ezdxf
@@ -24,7 +23,6 @@ from aidl_lang.export.job import Job, Options
 from aidl_lang.geometry.curves import Ellipse, Line
 from aidl_lang.geometry.drawing import draw
 from aidl_lang.geometry.solved import SolvedModel, SolvedStructure
-from tests.compiled import LIGHTER, compiled, json_of
 from tests.export.readers import read_dxf
 from tests.geometry.models import arc, circle, compound, model, primitive, rectangle, structure
 
@@ -133,27 +131,6 @@ def test_lines_of_a_drawing_are_joined_in_any_order_and_direction():
     bent = (Line((0, 0), (5, 0)), Line((5, 3), (5, 0)))
     found = only(document_of(structure("drawing", "d", compound("v", *bent))), "*")
     assert (found.closed, found.get_points("xy")) == (False, [(0, 0), (5, 0), (5, 3)])
-
-
-@pytest.mark.parametrize("path", LIGHTER)
-def test_examples(path: Path):
-    """Bodies by name, their areas from the entities read back, holes without seams."""
-    text = path.read_text("utf-8")
-    result, told = compiled(text), json_of(text)
-    bodies = read_dxf(result.export(".dxf", EXACT))
-    drawing = result.drawing
-    assert drawing is not None
-    engraved = {s.path for s in result.model.root.walk() if s.kind != "hole"}
-    assert {b.path for b in drawing.bodies} <= bodies.keys() <= engraved
-    for name in (b.path for b in drawing.bodies):
-        region = told["regions"][name]
-        loops = sorted(bodies[name].loops, key=lambda loop: -loop.area)
-        assert len(loops) == region["loops"]
-        assert sum(loop.length for loop in loops) == pytest.approx(region["perimeter"], rel=1e-7)
-        if len(region["faces"]) == 1:
-            area = loops[0].area - sum(loop.area for loop in loops[1:])
-            assert area == pytest.approx(region["area"], rel=1e-8)
-        assert max(loop.gap() for loop in loops) < 1e-6 * math.sqrt(region["area"])
 
 
 # --- Layers, colours, names, order -----------------------------------------------------------------

@@ -7,9 +7,9 @@ import io
 import math
 import subprocess
 import sys
+from typing import Any
 
 import pytest
-import trimesh
 
 from aidl_lang import pipeline
 from aidl_lang.common.render import render
@@ -20,6 +20,7 @@ from aidl_lang.geometry.curves import Circle
 from aidl_lang.geometry.drawing import draw
 from aidl_lang.geometry.solved import SolvedModel
 from tests.amount import large
+from tests.export.readers import read_meshes
 from tests.geometry.models import circle, model, rectangle, structure
 
 SUFFIXES = (".stl", ".3mf")
@@ -35,13 +36,8 @@ def of_model(m: SolvedModel, suffix: str, thickness: float | None = None) -> byt
     return export(Job(m, draw(m)[0], options=Options(thickness=thickness)), suffix).data
 
 
-def bodies(data: bytes, suffix: str) -> dict[str, trimesh.Trimesh]:
-    """The bodies of a file by name."""
-    return dict(trimesh.load_scene(io.BytesIO(data), file_type=suffix[1:]).geometry)
-
-
-def only(data: bytes, suffix: str) -> trimesh.Trimesh:
-    (body,) = bodies(data, suffix).values()
+def only(data: bytes, suffix: str) -> Any:
+    (body,) = read_meshes(data, suffix).values()
     return body
 
 
@@ -75,7 +71,7 @@ def test_every_vertex_lies_on_the_outline(suffix: str) -> None:
 
 @pytest.mark.parametrize("suffix", SUFFIXES)
 def test_bodies_stay_apart_named_and_placed(suffix: str) -> None:
-    found = bodies(written(STAND, suffix).data, suffix)
+    found = read_meshes(written(STAND, suffix).data, suffix)
     assert {name: body.bounds.round(5).tolist() for name, body in found.items()} == {
         "stand.base": [[0, 0, 0], [60, 40, 4]],
         "stand.back": [[0, 39, 4], [60, 42, 44]],
@@ -96,7 +92,7 @@ def test_what_is_left_out_is_named(suffix: str) -> None:
     )
     made = written(STAND, suffix, thickness=2)
     assert made.notes == ()
-    assert bodies(made.data, suffix)["stand.note"].volume == pytest.approx(200, rel=1e-6)
+    assert read_meshes(made.data, suffix)["stand.note"].volume == pytest.approx(200, rel=1e-6)
 
 
 def test_there_is_no_body() -> None:

@@ -8,7 +8,6 @@ from functools import cache
 import ezdxf
 import pypdfium2
 import pytest
-import trimesh
 from shapely.geometry import MultiPolygon, Polygon
 from shapely.geometry.base import BaseGeometry
 from svgelements import SVG
@@ -19,6 +18,7 @@ from aidl_lang.export.job import Options
 from aidl_lang.export.profiles import PROFILES
 from tests.compiled import model
 from tests.documents import ROOT
+from tests.export.readers import read_meshes
 from tests.export.test_dxf_for_cutters import is_closed, ring
 
 TEXT = (ROOT / "examples" / "workshop" / "name_sign.aidl").read_text("utf-8")
@@ -72,7 +72,7 @@ def test_engraving_comes_before_the_cuts() -> None:
 
 
 def test_it_is_as_thick_as_said_in_space_and_as_large_on_paper() -> None:
-    solid = trimesh.load(io.BytesIO(sign().export("stl")), file_type="stl")
+    (solid,) = read_meshes(sign().export("stl"), ".stl").values()
     assert solid.is_watertight
     assert solid.volume == pytest.approx(4 * sign().measure().area, rel=1e-3)
     with pypdfium2.PdfDocument(sign().export("pdf")) as made:

@@ -12,7 +12,6 @@ from typing import Any
 import numpy as np
 import pypdfium2
 import pytest
-import trimesh
 from svgelements import SVG
 from svgelements import Path as SvgPath
 
@@ -21,7 +20,7 @@ from aidl_lang.export.job import Options
 from aidl_lang.export.profiles import PROFILES
 from tests.compiled import model
 from tests.documents import ROOT
-from tests.export.readers import Loop, read_dxf
+from tests.export.readers import Loop, read_dxf, read_meshes, united
 
 PANELS = ("base", "lid", "front", "back", "right", "left")
 HOLES = {"base": 4, "lid": 9, "front": 4, "back": 0, "right": 3, "left": 1}
@@ -103,10 +102,10 @@ STANDING = {
 """How each panel, lying with its corner at the origin and its outside up, gets to its place in the case."""
 
 
-def standing(suffix: str) -> dict[str, trimesh.Trimesh]:
+def standing(suffix: str) -> dict[str, Any]:
     found = {}
     for name, data in panels(suffix).items():
-        mesh = trimesh.load_mesh(io.BytesIO(data), file_type=suffix[1:])
+        (mesh,) = read_meshes(data, suffix).values()
         assert mesh.is_watertight
         motion = np.eye(4)
         motion[:3, :3], motion[:3, 3] = STANDING[name]
@@ -119,7 +118,7 @@ def standing(suffix: str) -> dict[str, trimesh.Trimesh]:
 def test_the_panels_make_a_closed_case(suffix: str) -> None:
     """No two of them share any room, and together they are as large as a hollow box less the openings."""
     meshes = standing(suffix)
-    together = trimesh.boolean.union(list(meshes.values()))
+    together = united(meshes.values())
     total = sum(mesh.volume for mesh in meshes.values())
     assert together.volume == pytest.approx(total, abs=0.05)
     assert together.bounds == pytest.approx(np.array([[0, 0, 0], [LENGTH, DEPTH, HEIGHT]]), abs=1e-3)

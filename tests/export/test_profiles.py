@@ -95,19 +95,11 @@ def test_svg_and_dxf_agree_in_order_and_colour(name: str) -> None:
     assert {color for operation, color, _ in told if operation == "outer"} == {profile.looks["outer"].color}
 
 
+PALETTE = "000000 0000ff ff0000 00e000 d0d000 ff8000 00e0e0 ff00ff b4b4b4 0000a0 a00000"
+
+
 def test_the_colours_of_lightburn_are_those_of_its_palette_in_rising_order() -> None:
-    palette = [
-        "#000000",
-        "#0000ff",
-        "#ff0000",
-        "#00e000",
-        "#d0d000",
-        "#ff8000",
-        "#00e0e0",
-        "#ff00ff",
-        "#b4b4b4",
-    ]
-    palette += ["#0000a0", "#a00000"]
+    palette = [f"#{color}" for color in PALETTE.split()]
     looks = PROFILES["lightburn"].looks
     numbers = [palette.index(looks[operation].color) for operation in OPERATIONS]
     assert numbers == sorted(set(numbers))

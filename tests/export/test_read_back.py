@@ -10,7 +10,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-import trimesh
 from PIL import Image
 from shapely.geometry import shape
 from shapely.ops import unary_union
@@ -20,6 +19,7 @@ from aidl_lang.export.job import Options
 from tests import compiled
 from tests.amount import TRIES_ALL
 from tests.export import readers
+from tests.export.readers import read_meshes
 
 EXAMPLES = [path.stem for path in compiled.EXAMPLES][:: 1 if TRIES_ALL else 2]
 
@@ -117,7 +117,7 @@ def test_png(name: str):
 def test_meshes(name: str, suffix: str):
     """Chords stay within a ten-thousandth of the size of a body, or a micrometre."""
     data, told = example(name).export(suffix, Options(thickness=3)), bodies_of(name)
-    found = trimesh.load_scene(io.BytesIO(data), file_type=suffix[1:]).geometry
+    found = read_meshes(data, suffix)
     assert len(found) == len(told)
     for path, mesh in zip(told, found.values(), strict=True):
         region, box = told[path], told[path]["bb"]

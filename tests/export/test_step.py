@@ -10,8 +10,6 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from OCP.Interface import Interface_Static
-from OCP.Message import Message, Message_PrinterOStream
 
 from aidl_lang import pipeline
 from aidl_lang.common.render import render
@@ -24,7 +22,7 @@ from aidl_lang.geometry.region import Face, Loop, Region, area
 from aidl_lang.geometry.solved import SolvedGeometry, SolvedModel
 from tests.compiled import LIGHTER, compiled
 from tests.documents import ROOT
-from tests.export.step_reading import StepFile, read
+from tests.export.readers import read_step
 from tests.geometry.models import arc, circle, compound, model, primitive, rectangle, structure
 
 
@@ -71,7 +69,7 @@ def test_every_kind_of_curve_is_exact(tmp_path: Path) -> None:
         )
     )
     drawing, _ = draw(m)
-    (part,) = read(of_model(m, 2.5), tmp_path).parts
+    (part,) = read_step(of_model(m, 2.5), tmp_path).parts
     assert part.is_valid
     assert part.is_closed
     assert part.surfaces["Cylinder"] == 1
@@ -101,7 +99,7 @@ assembly box {
 
 def test_an_assembly_keeps_its_bodies_apart_named_and_coloured(tmp_path: Path) -> None:
     data, notes = written(SEVERAL)
-    file = read(data, tmp_path)
+    file = read_step(data, tmp_path)
     assert notes == []
     assert file.name == "box"
     assert [part.name for part in file.parts] == [
@@ -132,7 +130,7 @@ def test_a_box_of_boards_stands_in_space(tmp_path: Path) -> None:
     }
     """
     data, notes = written(program)
-    file = read(data, tmp_path)
+    file = read_step(data, tmp_path)
     assert notes == []
     assert {part.name: tuple(round(v, 9) for v in part.bounds) for part in file.parts} == {
         "box.bottom": (0, 0, 0, 100, 60, 3),
@@ -158,7 +156,7 @@ def test_turned_and_mirrored_structures(tmp_path: Path) -> None:
     }
     """
     data, notes = written(program)
-    file = read(data, tmp_path)
+    file = read_step(data, tmp_path)
     assert notes == ["W0726: `all.half.post` stands unturned in `all.half`, which is turned"]
     assert file["all.half.foot"].bounds == pytest.approx((98, 0, 0, 102, 20, 2), abs=1e-9)
     # Its origin is carried to (100, 20); its own turn stands it up in the plane of x and z.
@@ -177,7 +175,7 @@ def test_a_mirrored_structure_of_another_orientation(tmp_path: Path) -> None:
         @detached right = mirror(left, about: y_axis)
     }
     """
-    file = read(written(program)[0], tmp_path)
+    file = read_step(written(program)[0], tmp_path)
     right = file["all.right"]
     assert right.bounds == pytest.approx((1, 0, 0, 10, 2, 6), abs=1e-9)
     assert right.is_valid
@@ -215,6 +213,9 @@ def test_another_process_writes_the_same_and_says_nothing(tmp_path: Path) -> Non
 
 
 def test_settings_of_the_process_are_as_before() -> None:
+    from OCP.Interface import Interface_Static
+    from OCP.Message import Message, Message_PrinterOStream
+
     written(SEVERAL)
     settings = {"write.step.schema": "AP203", "write.step.unit": "INCH", "write.surfacecurve.mode": "On"}
     for name, value in settings.items():
@@ -246,7 +247,7 @@ def test_odd_names_come_back_as_they_are(tmp_path: Path) -> None:
     m = model(structure("assembly", name, structure("solid", name, circle("c", 0, 0, 1))))
     data = of_model(m, 1)
     assert data.isascii()
-    file = read(data, tmp_path)
+    file = read_step(data, tmp_path)
     assert (file.name, file.parts[0].name) == (name, f"{name}.{name}")
 
 
@@ -281,7 +282,7 @@ def test_outlines_that_touch(
     plate = structure(
         "solid", "s", rectangle("r", 0, 0, 40, 20), *(structure("hole", g.name, g) for g in holes)
     )
-    (part,) = read(of_model(model(plate), thickness), tmp_path).parts
+    (part,) = read_step(of_model(model(plate), thickness), tmp_path).parts
     assert part.is_valid
     radius = holes[0].values["radius"]
     exact = 800 - circles * math.pi * radius**2
@@ -306,7 +307,7 @@ def test_examples(path: Path, tmp_path: Path) -> None:
     made = compiled(path.read_text("utf-8"))
     assert made.ok
     assert made.drawing is not None
-    file: StepFile = read(made.export(".step", Options(thickness=3)), tmp_path)
+    file = read_step(made.export(".step", Options(thickness=3)), tmp_path)
     assert made.drawing.bodies
     for body in made.drawing.bodies:
         part = file[body.path]

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import random
 from collections.abc import Sequence
+from pathlib import Path
 
 from aidl_lang.checking import builtins, library
 from aidl_lang.checking.types import Signature
@@ -40,191 +41,51 @@ assembly top {{
 }}
 """
 
-SMALL = ("1", "2", "7", "10", "2.5", "5mm", "30deg", "90deg", "360", "-3", "0")
-ODD = (
-    "1e300",
-    "-1e300",
-    "1e-300",
-    "1e9",
-    "1e6",
-    "-0.0",
-    "0.1 + 0.2",
-    "1e999",
-    "0/0",
-    "1/0",
-    "sqrt(-1)",
-    "3..1",
-)
-UNKNOWN = (
-    "v",
-    "c.radius",
-    "l.length",
-    "p",
-    "guess(4)",
-    "fixed(4)",
-    "s.width",
-    "v / (v - v)",
-    "sqrt(v - 99)",
-    "-v",
-)
-POINTS = (
-    *("(0, 0)", "(0, 0)", "(10, 0)", "(3, 8)", "[4, 5]", "origin", "pt", "l.start", "c.center", "s.center"),
-    *("(1e300, 0)", "(v, 0)", "(1/0, 1)", "fixed((1, 2))", "guess((3, 4))", "polar(5, 72)", "(l.end.x, 3)"),
-)
-TEXTS = (
-    *('"m3"', '"left"', '""', '"AB"', '"x"', '"medium"', '"round"', '"608"', '"nema17"', "word", "str(v)"),
-    *(
-        '"\\u200f\\u0627"',
-        '"日本 ß é"',
-        '"a\\nb\\n\\nc"',
-        '"' + "long " * 60 + '"',
-        "sharp",
-        "left",
-        "str([1, [2]])",
-    ),
-)
-TRUTHS = ("true", "false", "v > 2", "p > 2", "c.radius == 5", "not (v > 2)", "overlaps(s, s2)", "1 == 1")
-GEOMETRY = (
-    "l",
-    "k",
-    "a",
-    "c",
-    "r",
-    "e",
-    "b",
-    "q",
-    "t",
-    "m",
-    "m[0]",
-    "pt",
-    "q.segment[0]",
-    "r.left",
-    "r.top",
-    "x_axis",
-)
-STRUCTURES = ("s", "s2", "self", "top", "s.body", "s.bb")
-LISTS = (
-    *(
-        "[]",
-        "[1]",
-        "n0",
-        "[1, 2, 3, 4]",
-        "[[1, 2], [3, 4], [5, 0]]",
-        "[[[]]]",
-        "m",
-        '["a", "b"]',
-        "[true, v]",
-        "range(0)",
-    ),
-    *(
-        "[(0, 0), (10, 0), (0, 10)]",
-        "[(0, 0), (0, 0), (0, 0)]",
-        "[(0, 0), (5, 0), (10, 0)]",
-        "[(0, 0)]",
-        "[s, s2]",
-    ),
-    *(
-        "[l, a]",
-        "[c, r]",
-        "[i * v for i in 0..3]",
-        "range(5)",
-        "zip(n0, n0)",
-        "[rec, rec]",
-        "enumerate(m)",
-        "0..4",
-    ),
-    *("[(0, 0), (10, 10), (10, 0), (0, 10)]", "[line_to(3, 4), close()]", "[p, (v, v), nothing]"),
-)
-RECORDS = (
-    "rec",
-    "record()",
-    "record(a: v)",
-    'record(size: "m3", size: 3)',
-    'screw("m3")',
-    'nema("nema17")',
-    "rec.place",
-)
-GROUPS: Sequence[Sequence[str]] = (
-    *(SMALL, ODD, UNKNOWN, POINTS, TEXTS, TRUTHS, GEOMETRY, STRUCTURES, LISTS, RECORDS),
-)
+
+def _groups() -> dict[str, tuple[str, ...]]:
+    """What `calls.txt` has under each of its headings."""
+    text = Path(__file__).with_name("calls.txt").read_text("utf-8")
+    found = (part.partition("\n") for part in text.split("=== ")[1:])
+    return {name: tuple(" | ".join(rows.splitlines()).split(" | ")) for name, _, rows in found}
+
+
+KNOWN = _groups()
+VALUES = [
+    KNOWN[name]
+    for name in [
+        "small",
+        "odd",
+        "unknown",
+        "points",
+        "texts",
+        "truths",
+        "geometry",
+        "structures",
+        "lists",
+        "records",
+    ]
+]
+NUMBERS = (*KNOWN["small"], *KNOWN["unknown"], *KNOWN["odd"])
 FITTING: dict[str, Sequence[str]] = {
-    "length": (*SMALL, *SMALL, *UNKNOWN, *ODD),
-    "angle": (*SMALL, *SMALL, *UNKNOWN, *ODD),
-    "plain number": (*SMALL, *UNKNOWN, *ODD),
-    "whole number": ("0", "-1", "1", "2", "3", "5", "2.5", "1e9", "p", "v"),
-    "text": TEXTS,
-    "condition": TRUTHS,
-    "point": POINTS,
-    "list of points": LISTS,
-    "list": LISTS,
-    "record": RECORDS,
-    "line": ("l", "k", "r.top", "q.segment[0]", "x_axis", "line((0, 0), (0, 0))"),
-    "arc": ("a", "arc(center: (0, 0), start: (1, 0), end: (1, 0))"),
-    "circle": ("c", "m[1]", "s2.body", "circle(radius: 0)"),
-    "ellipse": ("e", "ellipse(rx: 0, ry: 3)"),
-    "bezier": ("b",),
-    "box": (*GEOMETRY, *STRUCTURES, "m", "[s, s2]", "[]"),
-    "structure": STRUCTURES,
-    "geometry": GEOMETRY,
+    "length": (*KNOWN["small"], *NUMBERS),
+    "angle": (*KNOWN["small"], *NUMBERS),
+    "plain number": NUMBERS,
+    "text": KNOWN["texts"],
+    "condition": KNOWN["truths"],
+    "point": KNOWN["points"],
+    "list of points": KNOWN["lists"],
+    "list": KNOWN["lists"],
+    "record": KNOWN["records"],
+    "box": (*KNOWN["geometry"], *KNOWN["structures"], "m", "[s, s2]", "[]"),
+    "structure": KNOWN["structures"],
+    **{
+        kind: KNOWN[kind]
+        for kind in ("whole number", "line", "arc", "circle", "ellipse", "bezier", "geometry")
+    },
 }
-WORDS = (
-    "name",
-    "radius",
-    "width",
-    "n",
-    "center",
-    "at",
-    "x",
-    "y",
-    "size",
-    "about",
-    "gap",
-    "angle",
-    "of",
-    "from",
-)
-OUTLINES = (
-    "offset({}, 2)",
-    "hull({}, c)",
-    "mirror({}, about: y_axis)",
-    "shell({}, 1)",
-    "copy({}, by: (5, 5))",
-    "{}.bb",
-)
-MAKING = (
-    "x = {call}",
-    "x = {call} w = {outline}",
-    "x = {call} constrain x == {value}",
-    "x = {call} constrain {{ x.radius == 3 x.width <= {value} tangent(x, l) }}",
-    "x = {call} fillet(x, {number}) y = {outline}",
-    "construction x = {call} constrain {{ x.above(c) }}",
-    "solid u {{ x = {call} hole h {{ x = {call} }} }}",
-    "solid u {{ x = {call} hole h at {point} {{ y = {outline} }} }}",
-    "x = {call} at {point} rotated {number}",
-    "for i in 0..2 {{ x[i] = {call} }}",
-    "x = linear_array({call}, n: 3, pitch: {number})",
-)
-STATING = (
-    "constrain {call}",
-    "constrain {{ {call} {call2} }}",
-    "prefer {call} weight {number}",
-    "assert {call}",
-    "{call}",
-    "for i in 0..2 {{ constrain {call} }}",
-)
-COUNTING = (
-    "x = circle(radius: {call})",
-    "constrain {call} == {value}",
-    "constrain c.radius <= {call}",
-    'let y = {call} assert y > {number}, "y"',
-    "hole h[{call}] {{ x = circle(radius: 3) }}",
-    "if {call} {{ x = c }}",
-    "x = polygon({call})",
-    "x = [circle(radius: 3) for z in {call}]",
-    "@note(str({call})) solid u {{ x = text(str({call}), height: 3) }}",
-)
-PLACES = {"ShapeDefinition": MAKING, "Structure": MAKING, "ConstraintDefinition": STATING}
-ALL_PLACES = (*MAKING, *STATING, *COUNTING)
+PLACES = dict.fromkeys(("ShapeDefinition", "Structure"), KNOWN["making"])
+PLACES["ConstraintDefinition"] = KNOWN["stating"]
+ALL_PLACES = (*KNOWN["making"], *KNOWN["stating"], *KNOWN["counting"])
 
 
 class Writer:
@@ -243,7 +104,7 @@ class Writer:
             value=self.anything(1),
             number=self.fitting("length", 1),
             point=self.fitting("point", 1),
-            outline=self.random.choice(OUTLINES).format("x"),
+            outline=self.random.choice(KNOWN["outlines"]).format("x"),
         )
         return SETTING.format(body="    " + body)
 
@@ -258,8 +119,8 @@ class Writer:
             named = named or chance() < 0.4
             arguments.append(f"{word}: {value}" if named else value)
         if chance() < self.wild / 2:
-            arguments.append(f"{self.random.choice(WORDS)}: {self.anything(depth + 1)}")
-        on = f"{self.random.choice(GEOMETRY)}." if chance() < self.wild / 4 else ""
+            arguments.append(f"{self.random.choice(KNOWN['words'])}: {self.anything(depth + 1)}")
+        on = f"{self.random.choice(KNOWN['geometry'])}." if chance() < self.wild / 4 else ""
         return f"{on}{name}({', '.join(arguments)})"
 
     def fitting(self, kind: str, depth: int) -> str:
@@ -273,4 +134,4 @@ class Writer:
         if depth < 3 and self.random.random() < 0.2:
             name = self.random.choice(list(CALLABLES))
             return self.call(name, self.random.choice(CALLABLES[name]), depth + 1)
-        return self.random.choice(self.random.choice(GROUPS))
+        return self.random.choice(self.random.choice(VALUES))

@@ -11,7 +11,6 @@ import re
 import signal
 import sys
 import traceback
-from collections import Counter
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, fields, replace
@@ -58,10 +57,6 @@ class Finding:
     kind: str
     details: str
 
-    @property
-    def cause(self) -> tuple[str, str]:
-        return self.stage, self.kind
-
 
 class TooLong(BaseException):
     """The processor's time for a step ran out."""
@@ -83,75 +78,67 @@ def within(seconds: float) -> Iterator[None]:
         signal.signal(signal.SIGPROF, before)
 
 
-class Judge:
-    """Tries programs; `counts` tells how many steps of each kind it took."""
+def finding(text: str, seed: int = 0) -> Finding | None:
+    """What is wrong with the answers to a program; None if nothing is."""
+    sys.setrecursionlimit(max(sys.getrecursionlimit(), RECURSION))
+    source = SourceFile("fuzz.aidl", text)
+    steps = {"check": _check, "fix": _fix, "format": _format, "compile": lambda it: _compile(it, seed)}
+    for stage, step in steps.items():
+        found = attempt(stage, lambda step=step: step(source))  # type: ignore[misc]
+        if found is not None:
+            return found
+    return None
 
-    def __init__(self) -> None:
-        self.counts: Counter[str] = Counter()
-        sys.setrecursionlimit(max(sys.getrecursionlimit(), RECURSION))
 
-    def finding(self, text: str, seed: int = 0) -> Finding | None:
-        """What is wrong with the answers to a program; None if nothing is."""
-        source = SourceFile("fuzz.aidl", text)
-        for stage, step in (
-            ("check", self._check),
-            ("fix", self._fix),
-            ("format", self._format),
-            ("compile", self._compile),
-        ):
-            self.counts[stage] += 1
-            found = attempt(stage, lambda step=step: step(source, seed))  # type: ignore[misc]
+def _check(source: SourceFile) -> Finding | None:
+    return _shown("check", pipeline.check(source, settings=SETTINGS))
+
+
+def _fix(source: SourceFile) -> Finding | None:
+    mended = mend(source, settings=SETTINGS)
+    again = mend(mended.source, settings=SETTINGS)
+    if again.fixes:
+        return Finding("fix", f"goes on: {again.fixes[0]}", mended.source.text)
+    return None
+
+
+def _format(source: SourceFile) -> Finding | None:
+    text, _ = pipeline.formatted(source)
+    if text is None:
+        return None
+    plain = format_module(parse(source))  # names as they were written
+    trees = [_as_meant(parse(SourceFile(source.name, t)).module) for t in (source.text, plain)]
+    if not ast.same(*trees):
+        return Finding("format", "another program", plain)
+    twice, _ = pipeline.formatted(SourceFile(source.name, text))
+    if text != twice:
+        return Finding("format", "another form the second time", f"{text}\n=== again\n{twice}")
+    before, after = (_errors(SourceFile(source.name, t)) for t in (source.text, text))
+    if before is None or after is None or before == after:
+        return None
+    return Finding("format", f"{before} became {after}", text)
+
+
+def _compile(source: SourceFile, seed: int) -> Finding | None:
+    compiled = pipeline.compile(source, settings=SETTINGS)
+    if (found := _shown("compile", compiled.diagnostics)) is not None:
+        return found
+    if compiled.status == "wrong" and not has_errors(compiled.diagnostics):
+        return Finding("compile", "wrong, and no error says why", "")
+    if compiled.model is None:
+        return None
+    suffixes = [".svg", ".json", *random.Random(seed).sample((".dxf", ".pdf", ".png", ".stl"), 1)]
+    for suffix in suffixes:
+        for options in (Options(), Options(show=LAYERS, dimension=True)):
+            if options.dimension and suffix not in (".svg", ".pdf", ".png"):
+                continue
+            found = attempt(
+                f"write {suffix}",
+                lambda suffix=suffix, options=options: _written(compiled, suffix, options),  # type: ignore[misc]
+            )
             if found is not None:
                 return found
-        return None
-
-    def _check(self, source: SourceFile, seed: int) -> Finding | None:
-        return _shown("check", pipeline.check(source, settings=SETTINGS))
-
-    def _fix(self, source: SourceFile, seed: int) -> Finding | None:
-        mended = mend(source, settings=SETTINGS)
-        again = mend(mended.source, settings=SETTINGS)
-        if again.fixes:
-            return Finding("fix", f"goes on: {again.fixes[0]}", mended.source.text)
-        return None
-
-    def _format(self, source: SourceFile, seed: int) -> Finding | None:
-        text, _ = pipeline.formatted(source)
-        if text is None:
-            return None
-        plain = format_module(parse(source))  # names as they were written
-        trees = [_as_meant(parse(SourceFile(source.name, t)).module) for t in (source.text, plain)]
-        if not ast.same(*trees):
-            return Finding("format", "another program", plain)
-        twice, _ = pipeline.formatted(SourceFile(source.name, text))
-        if text != twice:
-            return Finding("format", "another form the second time", f"{text}\n=== again\n{twice}")
-        before, after = (_errors(SourceFile(source.name, t)) for t in (source.text, text))
-        if before is None or after is None or before == after:
-            return None
-        return Finding("format", f"{before} became {after}", text)
-
-    def _compile(self, source: SourceFile, seed: int) -> Finding | None:
-        compiled = pipeline.compile(source, settings=SETTINGS)
-        if (found := _shown("compile", compiled.diagnostics)) is not None:
-            return found
-        if compiled.status == "wrong" and not has_errors(compiled.diagnostics):
-            return Finding("compile", "wrong, and no error says why", "")
-        if compiled.model is None:
-            return None
-        suffixes = [".svg", ".json", *random.Random(seed).sample((".dxf", ".pdf", ".png", ".stl"), 1)]
-        for suffix in suffixes:
-            for options in (Options(), Options(show=LAYERS, dimension=True)):
-                if options.dimension and suffix not in (".svg", ".pdf", ".png"):
-                    continue
-                self.counts[f"write {suffix}"] += 1
-                found = attempt(
-                    f"write {suffix}",
-                    lambda suffix=suffix, options=options: _written(compiled, suffix, options),  # type: ignore[misc]
-                )
-                if found is not None:
-                    return found
-        return None
+    return None
 
 
 def _as_meant(node: ast.Node) -> ast.Node:

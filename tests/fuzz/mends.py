@@ -7,12 +7,8 @@ programs, and ends with 1 if one of them was not mended as it should be.
 
 from __future__ import annotations
 
-import argparse
-import json
 import random
 import sys
-import time
-from collections import Counter
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -27,7 +23,7 @@ from aidl_lang.syntax import ast
 from aidl_lang.tools.mending import mend
 from aidl_lang.tools.reference.collect import reference
 from tests.fuzz.judge import RECURSION, Finding, attempt
-from tests.fuzz.minimise import minimised
+from tests.fuzz.running import Found, fuzz, options
 from tests.fuzz.sources import misspelt, mutant, seeds
 
 SETTINGS = replace(pipeline.Settings(), building=BuildingLimits(entities=8000, turns=50_000, seconds=4.0))
@@ -96,48 +92,20 @@ RELATIONS = {
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--programs", type=int, default=1000)
-    parser.add_argument("--seed", type=int, default=1, help="of the first program; the others follow it")
+    parser = options(__doc__)
     parser.add_argument(
         "--texts", type=Path, action="append", default=[], help="a folder of further programs"
     )
-    parser.add_argument("--out", type=Path, default=Path("build/mends"), help="where what is wrong is kept")
+    parser.set_defaults(programs=1000, seed=1, out=Path("build/mends"))
     arguments = parser.parse_args()
     sys.setrecursionlimit(max(sys.getrecursionlimit(), RECURSION))
     texts = [*seeds(), *(p.read_text("utf-8") for f in arguments.texts for p in sorted(f.rglob("*.aidl")))]
-    wrong: dict[str, list[int]] = {}
-    changed: Counter[bool] = Counter()
-    begin, slowest = time.process_time(), (0.0, 0)
-    for seed in range(arguments.seed, arguments.seed + arguments.programs):
-        start = time.process_time()
-        found = finding(program(seed, texts))
-        slowest = max(slowest, (time.process_time() - start, seed))
-        changed[found is None] += 1
-        if found is not None:
-            wrong.setdefault(found.kind, []).append(seed)
-            _keep(arguments.out, seed, program(seed, texts), found)
-    told = {
-        "programs": arguments.programs,
-        "seconds": round(time.process_time() - begin),
-        "slowest": {"seconds": round(slowest[0], 1), "seed": slowest[1]},
-        "findings": {kind: len(seeds) for kind, seeds in wrong.items()},
-        "seeds": {kind: seeds[:20] for kind, seeds in wrong.items()},
-    }
-    print(json.dumps(told, indent=1))
-    return 1 if wrong else 0
 
+    def found(kind: str, text: str, seed: int) -> Found | None:
+        wrong = finding(text)
+        return wrong and (wrong.kind, wrong.details)
 
-def _keep(folder: Path, seed: int, text: str, found: Finding) -> None:
-    def alike(other: str) -> bool:
-        again = finding(other)
-        return again is not None and again.kind == found.kind
-
-    small = minimised(text, alike, seconds=20.0)
-    folder.mkdir(parents=True, exist_ok=True)
-    again = finding(small)
-    (folder / f"{seed}.aidl").write_text(small, "utf-8")
-    (folder / f"{seed}.txt").write_text(f"{found.kind}\n\n{(again or found).details}", "utf-8")
+    return fuzz(arguments, lambda seed: ("mutant", program(seed, texts)), found)
 
 
 if __name__ == "__main__":

@@ -1,32 +1,24 @@
 """`make fuzz-readers MINUTES=2`: hands changed files and messages to their readers; ends with 1 if one broke.
 
 Whatever a drawing, a font, a table or a client says, its reader takes it or tells what is wrong in its own
-words, in bounded time and memory. What breaks is made small and written to a folder, by its seed; it moves
-from there to `tests/fuzz/files`, where it stays a test.
+words, in bounded time and memory.
 """
 
 from __future__ import annotations
 
-import argparse
 import asyncio
 import faulthandler
 import io
 import json
 import logging
 import random
-import resource
 import sys
 import tempfile
-import time
 import traceback
-from collections import Counter
 from collections.abc import Callable, Mapping
 from functools import cache
 from pathlib import Path
 from typing import Any
-
-import ezdxf
-from pygls.exceptions import JsonRpcInternalError
 
 from aidl_lang import pipeline
 from aidl_lang.common.diagnostics import AidlError
@@ -35,15 +27,12 @@ from aidl_lang.common.font_files import FontError, FontFile
 from aidl_lang.common.running import OutOfTime, limited_to
 from aidl_lang.common.source import SourceFile
 from aidl_lang.common.world import MemoryWorld, Reads
-from aidl_lang.tools.lsp import serve
-from aidl_lang.tools.lsp.serve import make
 from aidl_lang.tools.sweeping.plan import read_table
 from tests.documents import ROOT
-from tests.fuzz.minimise import minimised
+from tests.fuzz.running import Found, fuzz, options
 from tests.test_font_files import bar, both, made_of, open_type, true_type
 
 FILES = Path(__file__).with_name("files")
-_MEMORY = 4 << 30
 _SECONDS = 20.0
 """Of the processor for one file: a drawing and a font are read in a small part of that."""
 _HANGS = 120
@@ -129,6 +118,8 @@ _CSV = b'width,name,note\n60,Ada,"one\ntwo"\n80,"B, ""b""",\n,,\n6cm,-5,=1\n'
 
 
 def _dxf(version: str) -> bytes:
+    import ezdxf
+
     document = ezdxf.new(version)
     block = document.blocks.new("B")
     block.add_circle((1, 2), 3)
@@ -231,7 +222,9 @@ def _rpc(data: bytes) -> object:
 
 async def _served(data: bytes) -> None:
     """Hands the bytes of a session to a server; raises if it crashes, or answers nothing after that."""
-    server, answers, crashes = make(), list[Any](), list[BaseException]()
+    from aidl_lang.tools.lsp import serve
+
+    server, answers, crashes = serve.make(), list[Any](), list[BaseException]()
     server.crashed = crashes.append  # type: ignore[method-assign]
     server.start()
     keeping = type("Keeping", (), {"write": lambda self, said: answers.append(json.loads(said))})
@@ -279,57 +272,24 @@ def finding(kind: str, data: bytes) -> str:
         return f"more than {_SECONDS:g} s"
     except Exception as error:  # noqa: BLE001 (what breaks, whatever it is, is the finding)
         place = traceback.extract_tb(error.__traceback__)[-1]
-        said = f": {error}" if isinstance(error, JsonRpcInternalError) else ""  # which tells of another
+        tells_of_another = type(error).__name__ == "JsonRpcInternalError"
+        said = f": {error}" if tells_of_another else ""
         return f"{type(error).__name__} in {Path(place.filename).name}:{place.lineno}{said}"
     finally:
         faulthandler.cancel_dump_traceback_later()
     return ""
 
 
-def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--minutes", type=float, default=2.0)
-    parser.add_argument("--seed", type=int, help="of the first file; the others follow it")
-    parser.add_argument("--out", type=Path, default=Path("build/fuzz"))
-    arguments = parser.parse_args()
-    first = arguments.seed if arguments.seed is not None else random.SystemRandom().randrange(1 << 32)
-    resource.setrlimit(resource.RLIMIT_AS, (_MEMORY, _MEMORY))
-    logging.disable()  # what the server says of a client
-    print(f"fuzzing readers from seed {first}", flush=True)
-    read, known = Counter[str](), dict[tuple[str, str], list[int]]()
-    begin, seed, slowest = time.monotonic(), first, (0.0, 0)
-    while time.monotonic() < begin + 60 * arguments.minutes:
-        kind, data = made(seed)
-        read[kind] += 1
-        started = time.process_time()
-        found = finding(kind, data)
-        slowest = max(slowest, (time.process_time() - started, seed))
-        if found and not known.setdefault((kind, found), []):
-            _keep(arguments.out, seed, kind, data, found)
-        if found:
-            known[kind, found].append(seed)
-        seed += 1
-    told = {
-        "seconds": round(time.monotonic() - begin),
-        "files": dict(read),
-        "slowest": {"seconds": round(slowest[0], 1), "seed": slowest[1]},
-        "findings": {f"{kind}: {found}": seeds for (kind, found), seeds in known.items()},
-    }
-    print(json.dumps(told, indent=1))
-    return 1 if known else 0
+def _found(kind: str, text: str, seed: int) -> Found | None:
+    said = finding(kind.removeprefix("."), text.encode("latin-1"))
+    return (f"{kind}: {said}", "") if said else None
 
 
-def _keep(folder: Path, seed: int, kind: str, data: bytes, found: str) -> None:
-    """Writes the smallest file that breaks its reader in the same way."""
-
-    def alike(text: str) -> bool:
-        return finding(kind, text.encode("latin-1")) == found
-
-    small = minimised(data.decode("latin-1"), alike, seconds=60.0).encode("latin-1")
-    folder.mkdir(parents=True, exist_ok=True)
-    (folder / f"{seed}.{kind}").write_bytes(small)
-    print(f"seed {seed}: {kind}: {found}\n{small[:400]!r}\n", flush=True)
+def _made(seed: int) -> tuple[str, str]:
+    kind, data = made(seed)
+    return f".{kind}", data.decode("latin-1")
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    logging.disable()  # what the server says of a client
+    sys.exit(fuzz(options(__doc__).parse_args(), _made, _found, "latin-1"))

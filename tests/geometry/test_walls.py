@@ -1,20 +1,17 @@
-"""Walls and gaps against numbers worked out by hand, Shapely, and a search of all chords one by one."""
+"""Walls and gaps against numbers worked out by hand, and Shapely."""
 
 from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Iterator
 
 import numpy as np
 import pytest
-import shapely
-from hypothesis import HealthCheck, assume, given
+from hypothesis import given
 from hypothesis import strategies as st
-from numpy.typing import NDArray
-from shapely.geometry import LineString, Point, Polygon
+from shapely.geometry import Polygon
 
-from aidl_lang.geometry.curves import Bezier, Circle, Ellipse, Line, Vec, nearest, point
+from aidl_lang.geometry.curves import Bezier, Circle, Ellipse, Line, nearest, point
 from aidl_lang.geometry.region import Face, Loop, Region
 from aidl_lang.geometry.solved import SolvedGeometry, SolvedStructure
 from aidl_lang.geometry.walls import Widths, thin_wall, widths
@@ -275,142 +272,3 @@ def _least_width(shape: Polygon) -> float:
     along = np.diff(corners, axis=0)
     across = np.stack((-along[:, 1], along[:, 0]), axis=1) / np.hypot(along[:, 0], along[:, 1])[:, None]
     return float(np.ptp(corners @ across[:: max(1, len(across) // 400)].T, axis=0).min())
-
-
-@st.composite
-def polygons(draw: st.DrawFn) -> list[Vec]:
-    """Corners of a simple polygon, counter-clockwise, many of them re-entrant: a tour through random places,
-    turned around (as 2-opt does) until it does not cross itself.
-    """
-    coordinates = st.floats(0, 40).map(lambda x: round(x, 3))
-    places = st.tuples(coordinates, coordinates)
-    corners = draw(st.lists(places, min_size=3, max_size=13, unique=True))
-    while crossing := next(_crossings(corners), None):
-        i, j = crossing
-        corners[i + 1 : j + 1] = corners[i + 1 : j + 1][::-1]
-    shape = Polygon(corners)
-    assume(shape.is_valid and shape.area > 10 and _is_plump(shape))
-    return corners if shape.exterior.is_ccw else corners[::-1]
-
-
-def _crossings(corners: list[Vec]) -> Iterator[tuple[int, int]]:
-    n = len(corners)
-    edges = [LineString((corners[k], corners[(k + 1) % n])) for k in range(n)]
-    for i, j in itertools.combinations(range(n), 2):
-        if edges[i].crosses(edges[j]):
-            yield i, j
-
-
-def _is_plump(shape: Polygon) -> bool:
-    """Whether corners keep away from edges, and from the ways across that end elsewhere, so that no choice
-    hangs on rounding.
-    """
-    corners = list(shape.exterior.coords)[:-1]
-    edges = [LineString(pair) for pair in itertools.pairwise(shape.exterior.coords)]
-    distances = [Point(c).distance(e) for c in corners for e in edges if c not in e.coords]
-    if min([*distances, *(e.length for e in edges)]) <= 0.01:
-        return False
-    feet = [(c, e.interpolate(e.project(Point(c))).coords[0]) for c in corners for e in edges]
-    ways = [LineString(way) for way in {*feet, *itertools.combinations(corners, 2)} if way[0] != way[1]]
-    points = np.array([Point(c) for c in corners])
-    apart = shapely.distance(np.array(ways)[:, None], points)
-    ends = shapely.distance(np.array([w.boundary for w in ways])[:, None], points) < 1e-9
-    return bool((ends | (apart > 0.01)).all())
-
-
-@tries(150, suppress_health_check=[HealthCheck.filter_too_much])
-@given(polygons(), st.booleans())
-def test_polygons_by_trying_all_chords(corners: list[Vec], as_hole: bool):
-    """A polygon, or the same as a hole in a frame that is far away: then its walls are gaps."""
-    loop = Loop(tuple(Line(p, q) for p, q in itertools.pairwise([*corners, corners[0]])))
-    region = Region((Face(loop),))
-    if as_hole:
-        frame = rectangle("f", -200, -200, 240, 240)
-        region = region_of(frame, hole("h", polygon("p", *corners)))
-    found = widths(region)
-    check_places(region, found)
-    check_thin(region, found)
-    by_hand = all_chords(corners)
-    walls, gaps = (min((length for k, length in by_hand if k == kind), default=None) for kind in (1, -1))
-    wall, gap = lengths(found)
-    if as_hole:
-        assert same(gap, walls, 1e-6), (found, walls)
-        assert gaps is None or same(wall, gaps, 1e-6), (found, gaps)
-    else:
-        assert same(wall, walls, 1e-6), (found, walls)
-        assert same(gap, gaps, 1e-6), (found, gaps)
-
-
-Array = NDArray[np.float64]
-
-
-def all_chords(corners: list[Vec]) -> list[tuple[int, float]]:
-    """Kind and length of every chord of a polygon that ends on a corner, and of every narrowing end."""
-    shape = Polygon(corners)
-    p = [np.array(c) for c in corners]
-    chords = [*_between_corners(p), *_to_edges(p)]
-    found = [(kind, math.dist(a, b)) for kind, a, b in chords if _is_clear(shape, a, b, kind)]
-    return found + list(_narrow_ends(p))
-
-
-def _between_corners(p: list[Array]) -> Iterator[tuple[int, Array, Array]]:
-    for i, j in itertools.combinations(range(len(p)), 2):
-        way = p[j] - p[i]
-        for kind in (1, -1):
-            if _looks(p, i, kind * way) and _looks(p, j, -kind * way):
-                yield kind, p[i], p[j]
-
-
-def _to_edges(p: list[Array]) -> Iterator[tuple[int, Array, Array]]:
-    for i, j in itertools.product(range(len(p)), repeat=2):
-        start, along = p[j], p[(j + 1) % len(p)] - p[j]
-        if i in (j, (j + 1) % len(p)):
-            continue
-        share = (p[i] - start) @ along / (along @ along)
-        foot = start + share * along
-        way = foot - p[i]
-        for kind in (1, -1):
-            if 0 <= share <= 1 and _inward(p, j) @ way * kind < 0 and _looks(p, i, kind * way):
-                yield kind, p[i], foot
-
-
-def _narrow_ends(p: list[Array]) -> Iterator[tuple[int, float]]:
-    for k, a in enumerate(p):
-        b, before, after = p[(k + 1) % len(p)], p[k - 1], p[(k + 2) % len(p)]
-        one, other = _angle(b - a, before - a), _angle(after - b, a - b)
-        for kind in (1, -1):
-            if all(90 - 1e-4 <= kind * angle <= 105 for angle in (one, other)):
-                yield kind, math.dist(a, b)
-
-
-def _angle(u: Array, v: Array) -> float:
-    return math.degrees(math.atan2(u[0] * v[1] - u[1] * v[0], u @ v))
-
-
-def _inward(p: list[Array], k: int) -> Array:
-    """Into the material, from the edge that begins at a corner."""
-    along = p[(k + 1) % len(p)] - p[k]
-    return np.array((-along[1], along[0]))
-
-
-def _looks(p: list[Array], k: int, way: Array) -> bool:
-    """Whether a direction lies between the inward normals of the edges at a corner."""
-    one = _inward(p, k - 1)
-    turn, part = _angle(one, _inward(p, k)), _angle(one, way)
-    return min(0, turn) - 1e-6 <= part <= max(0, turn) + 1e-6
-
-
-def _is_clear(shape: Polygon, a: Array, b: Array, kind: int) -> bool:
-    chord = LineString([a + 1e-6 * (b - a), b - 1e-6 * (b - a)])
-    if chord.intersection(shape.boundary.buffer(1e-7)).length > 1e-3:
-        return False  # along an edge
-    return bool(shape.buffer(1e-9).covers(chord) if kind == 1 else not shape.buffer(-1e-9).intersects(chord))
-
-
-def test_the_search_of_all_chords_by_hand():
-    """The helper itself: a square ring cut open has its leg as wall and its mouth as gap."""
-    outside = [(0, 0), (10, 0), (10, 10), (6, 10)]
-    inside = [(6, 7), (7, 7), (7, 3), (3, 3), (3, 7), (5, 7), (5, 10), (0, 10)]
-    tried = all_chords([(float(x), float(y)) for x, y in outside + inside])
-    assert min(length for kind, length in tried if kind == -1) == 1
-    assert min(length for kind, length in tried if kind == 1) == 3

@@ -6,16 +6,11 @@ from functools import cache
 from pathlib import Path
 
 import llguidance
-import mistral_common
-from mistral_common.tokens.tokenizers.base import SpecialTokenPolicy
-from mistral_common.tokens.tokenizers.tekken import Tekkenizer
 
 from aidl_lang.common.source import SourceFile
 from aidl_lang.parser import parse
 from aidl_lang.tools.grammars import export
 from tests.documents import ROOT, programs
-
-_VOCABULARY = Path(mistral_common.__file__).parent / "data" / "tekken_240911.json"
 
 
 class Vocabulary:
@@ -26,7 +21,13 @@ class Vocabulary:
     """
 
     def __init__(self, size: int) -> None:
-        tekken = Tekkenizer.from_file(str(_VOCABULARY))
+        import mistral_common
+        from mistral_common.tokens.tokenizers.base import SpecialTokenPolicy
+        from mistral_common.tokens.tokenizers.tekken import Tekkenizer
+
+        tekken = Tekkenizer.from_file(
+            str(Path(mistral_common.__file__).parent / "data" / "tekken_240911.json")
+        )
         first = tekken.num_special_tokens
         pieces = range(first, min(first + size, tekken.n_words))
         self.tokens = [tekken.id_to_byte_piece(i, SpecialTokenPolicy.KEEP) for i in pieces]

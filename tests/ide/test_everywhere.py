@@ -13,31 +13,9 @@ from aidl_lang.tools.ide.hover import hover
 from aidl_lang.tools.ide.signatures import signature_help
 from aidl_lang.tools.ide.workspace import View, Workspace, look, run
 from tests.compiled import FEW
+from tests.fuzz.sources import mutant
 
 from .conftest import seen
-
-_MARKS = (
-    *('"', "'", "/*", "{", "}", "(", ")", "[", "]", ".", "..", "@", "\t", "\r\n", "\ufeff", "\U0001d51b"),
-    *("°", "3..", "=", "#", "\\", "\x00", "param ", "for ", "constrain {", 'import "', "else", "a.b.", "0x"),
-)
-
-
-def _cut(chance: random.Random, text: str) -> str:
-    return text[: chance.randrange(len(text))]
-
-
-def _hole(chance: random.Random, text: str) -> str:
-    at = chance.randrange(len(text))
-    return text[:at] + text[at + chance.randrange(1, 12) :]
-
-
-def _mark(chance: random.Random, text: str) -> str:
-    at = chance.randrange(len(text))
-    return text[:at] + chance.choice(_MARKS) + text[at:]
-
-
-def _windows(chance: random.Random, text: str) -> str:
-    return "\ufeff" + text.replace("\n", "\r\n")
 
 
 def _ask(view: View, offset: int, files: Callable[[], list[Path]]) -> None:
@@ -63,8 +41,9 @@ def test_every_place_is_answered(path: Path) -> None:
 
     def texts() -> Iterator[tuple[str, int]]:
         yield text, 12
-        for change in (_cut, _cut, _hole, _hole, _mark, _mark, _mark, _windows):
-            yield change(chance, text), 3
+        for _ in range(5):
+            yield mutant(chance, [text]), 3
+        yield "\ufeff" + text.replace("\n", "\r\n"), 3
 
     for number, (changed, places) in enumerate(texts()):
         view = look(path, changed, world)
@@ -93,9 +72,9 @@ def test_every_place_is_answered(path: Path) -> None:
         "let a = a\nlet b = a.",
         "solid a { b = b.c.",
         "fn f(x) = f(x)\nsolid a { r = circle(radius: f(3)) }",
-        "(" * 300,
-        "solid a { r = " + "[" * 150,
-        "let a = " + "-" * 180 + "1",
+        "(" * 60,
+        "solid a { r = " + "[" * 40,
+        "let a = " + "-" * 40 + "1",
         "\U0001d51b\U0001d51c = \U0001d51b.",
         "\r\n\t\r\n",
     ],

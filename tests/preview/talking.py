@@ -7,13 +7,12 @@ import json
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from starlette.testclient import TestClient, WebSocketTestSession
+if TYPE_CHECKING:
+    from starlette.testclient import TestClient, WebSocketTestSession
 
-from aidl_lang.tools.preview.files import Write
-from aidl_lang.tools.preview.host import Host
-from aidl_lang.tools.preview.site import site
+    from aidl_lang.tools.preview.files import Write
 
 TOKEN, ADDRESS = "tok-En_123", "127.0.0.1:8123"
 TEXT = "param width = 60mm in 20..100\nsolid a { body = rectangle(width: width, height: 20) }\n"
@@ -27,6 +26,11 @@ def write_bytes(path: Path, data: bytes) -> None:
 
 
 def serving(file: Path, write: Write = write_bytes) -> TestClient:
+    from starlette.testclient import TestClient
+
+    from aidl_lang.tools.preview.host import Host
+    from aidl_lang.tools.preview.site import site
+
     app = site(Host(file, write), TOKEN, [ADDRESS, "localhost:8123"])
     return TestClient(app, base_url=f"http://{ADDRESS}")
 

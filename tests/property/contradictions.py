@@ -1,16 +1,9 @@
-"""Programs that are true of a drawing, and the same with one number or one first guess made wrong.
-
-    python -m tests.property.contradictions 500
-
-tells how many of so many wrong programs were explained rightly.
-"""
+"""Programs that are true of a drawing, and the same with one number or one first guess made wrong."""
 
 from __future__ import annotations
 
 import math
 import random
-import sys
-from collections import Counter
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 
@@ -55,8 +48,15 @@ class _Thing:
 
     @property
     def declared(self) -> str:
+        return self.placed(self.x, self.y)
+
+    def placed(self, x: float, y: float, is_inside: bool = False) -> str:
+        """Its declaration with another first guess of its place; `is_inside` a structure."""
         size = f"width: fixed({self.w:g}), height: fixed({self.h:g})"
-        return f"{self.name} = rectangle(center: ({self.x:g}, {self.y:g}), {size})"
+        if is_inside:
+            body = f"body = rectangle(center: fixed((0, 0)), {size})"
+            return f"drawing {self.name} at ({x:g}, {y:g}) {{ {body} }}"
+        return f"{self.name} = rectangle(center: ({x:g}, {y:g}), {size})"
 
 
 def _number(value: float) -> str:
@@ -148,6 +148,30 @@ def _are_tied(a: str, b: str, axis: str, stated: Iterable[_Stated]) -> bool:
     return b in reached
 
 
+def picture(seed: int, off: float) -> tuple[Program, dict[str, tuple[float, float]]]:
+    """What is true of a drawing, with first guesses that are so far off at most; and the true centres."""
+    things, stated = _true_statements(seed)
+    rng = random.Random(seed)
+    declared = [
+        thing.placed(
+            thing.x + rng.uniform(-off, off), thing.y + rng.uniform(-off, off), is_inside=rng.random() < 0.5
+        )
+        for thing in things
+    ]
+    truth = {thing.name: (thing.x, thing.y) for thing in things}
+    return Program(tuple(declared), tuple(each.says(each.value) for each in stated)), truth
+
+
+def centers(found: pipeline.Compiled) -> dict[str, tuple[float, float]]:
+    """Of the rectangles that are drawn, by their names or by those of what they are in."""
+    assert found.model is not None
+    return {
+        g.path.split(".")[1]: g.values["center"]
+        for g in found.model.root.walk_geometry()
+        if g.type == "rectangle"
+    }
+
+
 # --- Judgement -------------------------------------------------------------------------------------
 
 
@@ -229,22 +253,3 @@ def guess_fault(program: Program) -> str | None:
     if codes == ["E0602"] and any(d.fix for d in found.diagnostics):
         return None
     return f"{codes}"
-
-
-def main(count: int) -> None:
-    told: Counter[str] = Counter()
-    wrong = [p for p in map(broken_program, range(4 * count)) if p is not None][:count]
-    failed = 0
-    for program in wrong:
-        found = list(faults(program))
-        failed += bool(found)
-        told.update(found)
-        if found:
-            print(program.text, *found, sep="\n", end="\n\n")
-    print(f"{len(wrong)} contradictions, {failed} explained wrongly: {told.most_common(6)}")
-    answers = Counter(filter(None, (guess_fault(badly_guessed(seed)) for seed in range(count))))
-    print(f"{count} bad guesses: {sum(answers.values())} neither solved nor helped: {answers.most_common(4)}")
-
-
-if __name__ == "__main__":
-    main(int(sys.argv[1]) if len(sys.argv) > 1 else 100)

@@ -1,4 +1,4 @@
-"""Random small programs that are well-formed, and random texts that are not."""
+"""Random small programs that are well-formed."""
 
 from __future__ import annotations
 
@@ -122,19 +122,6 @@ def sketches(draw: st.DrawFn, least: int = 2, most: int = 3) -> Sketch:
         relation = draw(st.sampled_from(RELATIONS + COMPARISONS))
         relations.append(relation.format(a=f"part_{i}", b=f"part_{other}", g=draw(SIZES)))
     return Sketch(parts, tuple(relations))
-
-
-WORDS = r"""
-assembly solid hole drawing part param var let constrain prefer assert for in if else then import shape fn
-constraint alias template construction step weight todo at rotated and or not true false self origin x_axis
-rectangle( circle( line( arc( polygon( above( tangent( inside( fixed( guess( len( min( ( ) [ ] { } , ; : . ..
-..< = == <= >= != < > + - * / % ^ @ @color( " ' // /* */ # a b c a.b a[0] a[-1] r.top 0 1 2.5 1e300 1e999
-10mm 30deg 1turn 0..9 é 名 \
-"""
-
-TOKEN_SOUP = st.lists(st.sampled_from([*WORDS.split(), "\n"]), max_size=40).map(" ".join)
-STRUCTURED_SOUP = TOKEN_SOUP.map(lambda soup: f"solid s {{ r = rectangle(width: 3, height: 4)\n{soup}\n}}")
-ANY_TEXT = st.text(max_size=80)
 
 
 GEOMETRIC = (

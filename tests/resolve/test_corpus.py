@@ -1,11 +1,10 @@
 """A corpus of misspelt and foreign names: what is mended unasked has the meaning that was wanted, and nothing
-that is offered turns a meaning round. `python -m tests.resolve.test_corpus` prints the figures.
+that is offered turns a meaning round.
 """
 
 from __future__ import annotations
 
 import re
-from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -102,14 +101,3 @@ def test_nothing_is_mended_into_another_meaning(case: Case) -> None:
 
 def test_the_corpus_is_large_enough() -> None:
     assert len(list(cases())) >= 300
-
-
-def figures() -> dict[str, int]:
-    """How many names of the corpus were dealt with in which way."""
-    return dict(Counter(judged(case).kind for case in cases()))
-
-
-if __name__ == "__main__":
-    for case in cases():
-        print(case.place, "→", case.wanted, judged(case))
-    print(figures())

@@ -17,7 +17,6 @@ from typing import Any
 
 import pytest
 from playwright.sync_api import Browser, Page, expect
-from scipy.stats import rankdata
 
 from aidl_lang.tools.cli import main
 from eval.tests.study import results
@@ -112,6 +111,8 @@ def ranks_of(taste: Taste, prompt: str) -> dict[str, float] | None:
     if liked is None:
         return None
     levels = [9 if (prompt, name, 1) in STATES else liked[name] for name in LANGUAGES]
+    from scipy.stats import rankdata
+
     return dict(zip(LANGUAGES, map(float, rankdata(levels)), strict=True))
 
 

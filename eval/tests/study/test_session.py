@@ -11,7 +11,6 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from scipy import stats
 
 from aidl_eval.judgements import STUDY, Answer, Answers, rater_named, sheets
 from aidl_eval.preference import study_of
@@ -52,6 +51,8 @@ def test_every_prompt_comes_once_before_any_comes_twice(session: Session) -> Non
 
 
 def test_each_place_on_the_screen_and_in_the_order_is_drawn_by_lot(session: Session) -> None:
+    from scipy import stats
+
     first = [session.order(str(n))[0] for n in range(600)]
     runs = Counter(sheet.run for sheet in first)
     prompts = Counter(sheet.prompt for sheet in first)
