@@ -2,20 +2,163 @@
 
 from __future__ import annotations
 
+import math
 import os
 import re
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import field, replace
 from typing import Protocol
+from urllib.parse import urlsplit
 
 from aidl_lang.common.diagnostics import has_errors
+from aidl_lang.common.records import record
 from aidl_lang.common.source import SourceFile
 from aidl_lang.parser import parse
 from aidl_lang.tools.grammars import export
-from aidl_lang.tools.llm.messages import Finish, Message, Provider, ProviderError, Reply, Sampling
-from aidl_lang.tools.llm.providers.connection import ANTHROPIC, EXEC, Connection, Price, decide
+from aidl_lang.tools.llm.messages import Finish, Message, Provider, ProviderError, Reply, Sampling, Usage
 
-__all__ = ["SERVERS", "Closable", "Connection", "Constrained", "Price", "connect", "members"]
+# --- Chooses the model and its server from options and the environment.
+
+OPENAI, ANTHROPIC, EXEC = "openai", "anthropic", "exec:"
+DEFAULT_URL = {OPENAI: "https://api.openai.com/v1", ANTHROPIC: "https://api.anthropic.com"}
+
+_WAYS = (
+    "OPENAI_API_KEY=… or ANTHROPIC_API_KEY=… in the environment, and --model NAME",
+    "--base-url http://localhost:11434/v1 --model NAME asks a server of your own (Ollama, vLLM, llama.cpp)",
+    "--provider 'exec:COMMAND' asks a command",
+    "AIDL_PROVIDER, AIDL_MODEL and OPENAI_BASE_URL say the same in the environment",
+)
+
+
+@record()
+class Price:
+    """Dollars per million tokens."""
+
+    input: float
+    output: float
+
+    @classmethod
+    def parse(cls, text: str) -> Price:
+        """Parses `IN/OUT`, as in `2.5/10`; raises ValueError."""
+        numbers = [float(part.strip().removeprefix("$")) for part in text.split("/")]
+        if len(numbers) != 2 or not all(0 <= number < math.inf for number in numbers):
+            raise ValueError(f"expected dollars per million tokens in and out, as in 2.5/10, not `{text}`")
+        return cls(*numbers)
+
+    def of(self, usage: Usage) -> float | None:
+        if usage.input is None or usage.output is None:
+            return None
+        return (usage.input * self.input + usage.output * self.output) / 1e6
+
+
+@record()
+class Connection:
+    """The options for a model; empty ones are left to the environment."""
+
+    provider: str = ""
+    """`openai` for every server that speaks OpenAI's protocol, `anthropic`, or `exec:COMMAND`."""
+
+    model: str = ""
+    base_url: str = ""
+    timeout: float = 600.0
+    """Seconds without a sign of life."""
+
+    retries: int = 3
+    """How often a request is repeated when the server is busy, fails, or loses the connection."""
+
+    price: Price | None = None
+    """Used if the server does not report the cost of a reply."""
+
+    key: str = ""
+
+    @property
+    def address(self) -> str:
+        """The base URL as it may be shown."""
+        return without_credentials(self.base_url)
+
+
+def without_credentials(text: str) -> str:
+    """Returns a text without the user, the password and the query of a URL in it."""
+    return re.sub(r"\?[^\s#]+", "?…", re.sub(r"(^|//)[^/\s]*@", r"\1…@", text))
+
+
+def decide(said: Connection, environment: Mapping[str, str]) -> Connection:
+    """Returns the connection completed from the environment; only `model` may stay empty."""
+    provider = said.provider or environment.get("AIDL_PROVIDER", "") or _by_environment(said, environment)
+    if not provider.startswith(EXEC) and provider not in DEFAULT_URL:
+        raise ProviderError(
+            "E0930", f"there is no provider `{provider}`", "there are openai, anthropic and exec:COMMAND"
+        )
+    decided = replace(
+        said,
+        provider=provider,
+        model=said.model or environment.get("AIDL_MODEL", ""),
+        price=said.price or _price(environment.get("AIDL_PRICE", "")),
+    )
+    return decided if provider.startswith(EXEC) else _server(decided, environment)
+
+
+def _by_environment(said: Connection, environment: Mapping[str, str]) -> str:
+    if said.base_url:
+        return OPENAI
+    found = [
+        kind
+        for kind in (OPENAI, ANTHROPIC)
+        if any(environment.get(f"{kind.upper()}_{what}") for what in ("API_KEY", "BASE_URL"))
+    ]
+    if not found:
+        raise ProviderError("E0930", "nothing says which language model to ask", *_WAYS)
+    if len(found) > 1:
+        raise ProviderError(
+            "E0930",
+            "the environment speaks for two providers, openai and anthropic",
+            "say --provider openai or --provider anthropic, or set AIDL_PROVIDER",
+        )
+    return found[0]
+
+
+def _server(decided: Connection, environment: Mapping[str, str]) -> Connection:
+    prefix = decided.provider.upper()
+    key = decided.key or environment.get(f"{prefix}_API_KEY", "").strip()
+    given = decided.base_url or environment.get(f"{prefix}_BASE_URL", "").strip()
+    if given and not _is_address(given):
+        raise ProviderError(
+            "E0930",
+            f"`{without_credentials(given)}` is no base URL",
+            "it starts with http:// or https://, as http://localhost:11434/v1",
+        )
+    if not key and not given:
+        raise ProviderError(
+            "E0932",
+            f"there is no key for {decided.provider}",
+            f"set {prefix}_API_KEY",
+            "a server of your own needs no key: name it with --base-url",
+        )
+    if not key.isascii() or not key.isprintable():
+        raise ProviderError(
+            "E0932", f"{prefix}_API_KEY holds characters that no key has", "copy the key again"
+        )
+    return replace(decided, key=key, base_url=(given or DEFAULT_URL[decided.provider]).rstrip("/"))
+
+
+def _is_address(url: str) -> bool:
+    try:
+        parts = urlsplit(url)
+        _ = parts.port  # raises when it is not a number
+    except ValueError:
+        return False
+    return parts.scheme in ("http", "https") and bool(parts.hostname)
+
+
+def _price(text: str) -> Price | None:
+    if not text:
+        return None
+    try:
+        return Price.parse(text)
+    except ValueError:
+        raise ProviderError(
+            "E0930", f"AIDL_PRICE is `{text}`", "it has dollars per million tokens in and out, as in 2.5/10"
+        ) from None
 
 
 class Closable(Provider, Protocol):
@@ -40,6 +183,95 @@ def connect(said: Connection, environment: Mapping[str, str] = os.environ) -> Cl
     except ImportError as error:
         missing = f"the package `{error.name}` is not installed" if error.name else str(error)
         raise ProviderError("E0931", missing, "pip install 'aidl-lang[models]'") from None
+
+
+# --- A reply while it arrives, and what is read of a document from outside.
+
+MAX_TEXT = 1_000_000
+"""Most characters; a program has thousands. A looping model would go on for ever."""
+
+_LINE = 300
+UNKNOWN = Usage(None, None, None)
+
+
+@record(frozen=False)
+class Draft:
+    """The reply so far; `finish` stays None until it has ended."""
+
+    hear: Callable[[str], None]
+    model: str
+    usage: Usage = UNKNOWN
+    finish: Finish | None = None
+    started: bool = False
+    """True once anything came that belongs to the protocol."""
+
+    _pieces: list[str] = field(default_factory=list)
+    _length: int = 0
+
+    def say(self, text: str) -> None:
+        if not text:
+            return
+        self._length += len(text)
+        if self._length > MAX_TEXT:
+            raise too_long()
+        self._pieces.append(text)
+        self.hear(text)
+
+    @property
+    def text(self) -> str:
+        return "".join(self._pieces)
+
+    def reply(self, price: Price | None) -> Reply:
+        usage = self.usage
+        if usage.cost is None and price is not None:
+            usage = replace(usage, cost=price.of(usage))
+        return Reply(self.text, usage, self.finish or Finish.COMPLETE, self.model)
+
+
+def too_long() -> ProviderError:
+    return ProviderError(
+        "E0938",
+        f"the reply has more than {MAX_TEXT:,} characters",
+        "the model repeats itself: set --max-tokens, or take another model",
+    )
+
+
+def dig(value: object, *path: str | int) -> object:
+    """Returns the value at a place in a JSON document; None without such a place."""
+    for step in path:
+        if isinstance(value, dict) and isinstance(step, str):
+            value = value.get(step)
+        elif isinstance(value, list) and isinstance(step, int) and step < len(value):
+            value = value[step]
+        else:
+            return None
+    return value
+
+
+def words(value: object) -> str:
+    """Returns a text of a document; "" for another value."""
+    return value if isinstance(value, str) else ""
+
+
+def one_line(value: object, secret: str = "") -> str:
+    """Returns a text from outside as a short line to show, without control characters and without the key."""
+    text = words(value)
+    if secret:
+        text = text.replace(secret, "…")
+    line = " ".join("".join(c if c.isprintable() else " " for c in text).split())
+    return line if len(line) <= _LINE else line[: _LINE - 1] + "…"
+
+
+def count(value: object) -> int | None:
+    """Returns a number of tokens; None for another value."""
+    return value if isinstance(value, int) and not isinstance(value, bool) and value >= 0 else None
+
+
+def dollars(value: object) -> float | None:
+    """Returns a sum of money; None for another value."""
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        return None
+    return float(value) if 0 <= value < math.inf else None
 
 
 # --- Constrained decoding: the grammar goes with each request, in the form that a kind of server reads.

@@ -15,7 +15,7 @@ from contextlib import contextmanager, suppress
 from typing import IO
 
 from aidl_lang.tools.llm.messages import Finish, Message, ProviderError, Reply, Sampling, Usage
-from aidl_lang.tools.llm.providers.connection import (
+from aidl_lang.tools.llm.providers import (
     DEFAULT_URL,
     EXEC,
     MAX_TEXT,

@@ -14,7 +14,7 @@ from urllib.parse import urlsplit
 import httpx2
 
 from aidl_lang.tools.llm.messages import Finish, Message, ProviderError, Reply, Sampling, Usage
-from aidl_lang.tools.llm.providers.connection import (
+from aidl_lang.tools.llm.providers import (
     DEFAULT_URL,
     UNKNOWN,
     Connection,
@@ -317,7 +317,7 @@ class OpenAI(Server):
 
     def _send(self, messages: Sequence[Message], sampling: Sampling) -> Any:
         said = [{"role": message.role, "content": _content(message)} for message in messages]
-        for _ in range(3):
+        while True:  # it adapts twice at most
             options = self._options(sampling)
             try:
                 return self._client.chat.completions.create(
@@ -326,7 +326,6 @@ class OpenAI(Server):
             except (self._sdk.BadRequestError, self._sdk.UnprocessableEntityError) as error:
                 if not self._adapt(self._words(error.body), options):
                     raise
-        raise AssertionError("it adapts twice at most")
 
     def _options(self, sampling: Sampling) -> dict[str, object]:
         options: dict[str, object] = {
@@ -356,13 +355,9 @@ class OpenAI(Server):
         if refusal := words(dig(said, "refusal")):
             draft.say(refusal)
             draft.finish = Finish.REFUSED
-        self._read_end(document, choice, draft)
-
-    def _read_end(self, document: object, choice: object, draft: Draft) -> None:
         self._refuse_error(choice)
         reason = words(dig(choice, "finish_reason"))
-        is_whole = dig(choice, "message") is not None
-        if reason or is_whole:
+        if reason or dig(choice, "message") is not None:
             draft.finish = draft.finish or _FINISH.get(reason, Finish.COMPLETE)
         if usage := dig(document, "usage"):
             draft.usage = Usage(
