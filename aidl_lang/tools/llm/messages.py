@@ -13,7 +13,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import field
 from enum import StrEnum
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal, Protocol
+from typing import TYPE_CHECKING, Literal, Protocol, TypeVar
 
 from aidl_lang.common.diagnostics import AidlError, Diagnostic
 from aidl_lang.common.records import record
@@ -154,15 +154,14 @@ class Usage:
     cost: float | None = 0.0
 
     def __add__(self, other: Usage) -> Usage:
-        unknown = None in (self.cost, other.cost)
-        return Usage(
-            _total(self.input, other.input),
-            _total(self.output, other.output),
-            None if unknown else (self.cost or 0.0) + (other.cost or 0.0),
-        )
+        counts = _total(self.input, other.input), _total(self.output, other.output)
+        return Usage(*counts, _total(self.cost, other.cost))
 
 
-def _total(a: int | None, b: int | None) -> int | None:
+N = TypeVar("N", int, float)
+
+
+def _total(a: N | None, b: N | None) -> N | None:
     return None if a is None or b is None else a + b
 
 
