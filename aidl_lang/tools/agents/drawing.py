@@ -265,8 +265,8 @@ def drawn(
         shortened,
         exports,
         left,
-        png,
-        report=joined(
+        pictures=() if png is None else (png,),
+        text=joined(
             [
                 _headline(compiled, png is not None),
                 compact(diagnostics),

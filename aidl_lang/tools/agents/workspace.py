@@ -6,7 +6,6 @@ import math
 import re
 from collections.abc import Mapping
 from dataclasses import field
-from functools import cached_property
 from pathlib import Path
 
 from aidl_lang import parser, pipeline
@@ -52,24 +51,11 @@ class Limits:
     files: int = 100
     text: int = 60_000
     pixels: int = 1_000
-    entities: int = 12_000
-    constraints: int = 20_000
-    turns: int = 100_000
-    seconds_to_build: float = 8.0
-    seconds_to_solve: float = 12.0
-
-    @cached_property
-    def settings(self) -> Settings:
-        return Settings(
-            TextLimits(max_characters=self.characters),
-            BuildingLimits(
-                entities=self.entities,
-                constraints=self.constraints,
-                turns=self.turns,
-                seconds=self.seconds_to_build,
-            ),
-            SolverSettings(tolerance=1e-10, seconds=self.seconds_to_solve),
-        )
+    settings: Settings = Settings(
+        TextLimits(max_characters=400_000),
+        BuildingLimits(entities=12_000, constraints=20_000, turns=100_000, seconds=8.0),
+        SolverSettings(tolerance=1e-10, seconds=12.0),
+    )
 
 
 @record()

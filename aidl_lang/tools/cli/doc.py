@@ -179,13 +179,8 @@ def register_guide(parser: argparse.ArgumentParser) -> None:
     """`aidl guide`: the language on a few pages, for a reader or a model that has never seen it."""
     kind = parser.add_mutually_exclusive_group()
     flag(kind, "--full", "with the whole reference after it")
-    value(
-        kind,
-        "--with",
-        "TOPICS",
-        "with the reference of some topics after it, as joints,hardware",
-        dest="topics",
-    )
+    about = "with the reference of some topics after it, as joints,hardware"
+    value(kind, "--with", "TOPICS", about, dest="topics")
     add_variant(kind)
 
 
@@ -219,13 +214,8 @@ def register_grammar(parser: argparse.ArgumentParser) -> None:
     """`aidl grammar`: the grammar, for servers that constrain what a model may write, and for readers."""
     value(parser, "--format", "FORMAT", f"{', '.join(FORMATS)} (default: lark)", str, "lark")
     flag(parser, "--fenced", "free text first, then the program in a block opened by ```aidl")
-    parser.add_argument(
-        "-o",
-        "--output",
-        default=files.STANDARD,
-        metavar="OUT",
-        help="where to write (default: standard output)",
-    )
+    about = "where to write (default: standard output)"
+    parser.add_argument("-o", "--output", default=files.STANDARD, metavar="OUT", help=about)
 
 
 def run_grammar(arguments: argparse.Namespace) -> int:
@@ -263,14 +253,11 @@ def run_explain(arguments: argparse.Namespace) -> int:
         return 0
     code = arguments.code.strip("[]").upper()
     if code not in resources.codes():
-        raise UseError("E0907", f"there is no code `{arguments.code}`", *_suggestions(resources.near(code)))
+        near = " or ".join(resources.near(code))
+        hints = [f"did you mean {near}?"] * bool(near) + ["`aidl explain` lists all codes"]
+        raise UseError("E0907", f"there is no code `{arguments.code}`", *hints)
     print(resources.page(code).rstrip())
     return 0
-
-
-def _suggestions(codes: list[str]) -> list[str]:
-    listed = "`aidl explain` lists all codes"
-    return [f"did you mean {' or '.join(codes)}?", listed] if codes else [listed]
 
 
 STARTER = """\
@@ -320,22 +307,14 @@ def structure_name(stem: str) -> str:
     return f"part_{name}".rstrip("_") if unfit else name
 
 
-_STYLES = ("openai", "anthropic", "mcp")
-
-
 def register_tool_schema(parser: argparse.ArgumentParser) -> None:
     """`aidl tool-schema`: the tools for agents as JSON, to be put into a request to a language model."""
-    choice(
-        parser,
-        "--style",
-        _STYLES,
-        "the API that they are for (default: openai, and servers that speak like it)",
-        _STYLES[0],
-    )
+    about = "the API that they are for (default: openai, and servers that speak like it)"
+    choice(parser, "--style", ("openai", "anthropic", "mcp"), about)
 
 
 def run_tool_schema(arguments: argparse.Namespace) -> int:
-    from aidl_lang.tools.agents.schema import STYLES
+    from aidl_lang.tools.agents.calling import STYLES
 
     print_json(STYLES[arguments.style]())
     return 0
