@@ -54,7 +54,7 @@ VERBS = {
 }
 """The verbs in the order of the help."""
 _TOGETHER = {
-    "build": ("compile", "watch", "sheet"),
+    "build": ("compile", "watch", "sheet", "show"),
     "check": ("fmt", "params"),
     "doc": ("guide", "grammar", "explain", "new", "tool-schema"),
     "generate": ("eval",),

@@ -1,8 +1,9 @@
-"""`aidl compile`, `aidl watch` and `aidl sheet`: compiles a program and writes files."""
+"""`aidl compile`, `watch`, `sheet` and `show`: compiles a program, and draws it in files or the terminal."""
 
 from __future__ import annotations
 
 import argparse
+import os
 import re
 import sys
 import time
@@ -19,6 +20,7 @@ from aidl_lang.tools.cli import files
 from aidl_lang.tools.cli.files import UseError, exit_code, say, show
 from aidl_lang.tools.cli.options import (
     add_drawing,
+    add_look,
     add_outputs,
     add_params,
     add_pixels,
@@ -26,6 +28,7 @@ from aidl_lang.tools.cli.options import (
     add_strict,
     add_variant,
     choice,
+    count_to,
     flag,
     options,
     profile,
@@ -35,9 +38,11 @@ from aidl_lang.tools.cli.options import (
 if TYPE_CHECKING:
     from aidl_lang.common.diagnostics import Diagnostic
     from aidl_lang.export.job import Options
+    from aidl_lang.export.marks import Picture, Text
     from aidl_lang.pipeline import Compiled
     from aidl_lang.solver.hierarchy import Memory
     from aidl_lang.solver.problem import StageReport
+    from aidl_lang.tools.terminal import Label, Screen
 
 
 _DEFAULT_FORMAT = ".svg"
@@ -321,7 +326,7 @@ def register_sheet(parser: argparse.ArgumentParser) -> None:
     way.add_argument("--portrait", dest="landscape", action="store_const", const=False, help="stand it up")
     value(parser, "--scale", "N:M", "as in 1:2 (default: by fit)", _scale)
     value(parser, "--date", "TEXT", "the date in the title block (default: none)", str, "")
-    choice(parser, "--standard", ("iso", "ansi"), "paper and projection (default: iso)", "iso")
+    choice(parser, "--standard", ("iso", "ansi"), "paper and projection (default: iso)")
     add_pixels(parser)
 
 
@@ -376,3 +381,110 @@ def _scale(text: str) -> tuple[int, int]:
     if found is None:
         raise argparse.ArgumentTypeError(f"expected a scale such as 1:2 or 5:1, not `{text}`")
     return int(found[1]), int(found[2])
+
+
+# --- A preview of the drawing in the terminal.
+
+_PROMPT = 2
+"""Rows left free: for the command, and for the prompt after it."""
+_SAMPLES = 4
+"""Pixels drawn per shown pixel, across and down."""
+
+
+def register_show(parser: argparse.ArgumentParser) -> None:
+    """`aidl show`: a preview of the drawing in the terminal."""
+    from aidl_lang.tools.terminal import PROTOCOLS
+
+    add_program(parser)
+    add_params(parser)
+    add_look(parser)
+    value(parser, "--width", "COLUMNS", "columns to fill at most (default: the terminal)", count_to(1000))
+    about = "how to show it (default: auto, the best that the terminal is known for)"
+    choice(parser, "--protocol", ("auto", *PROTOCOLS), about)
+
+
+def run_show(arguments: argparse.Namespace) -> int:
+    from aidl_lang import pipeline
+    from aidl_lang.common.render import wants_colour
+    from aidl_lang.export import require_sheets
+    from aidl_lang.export.job import Job, Options
+    from aidl_lang.export.picture import picture
+    from aidl_lang.tools.terminal import protocol
+
+    options = Options(arguments.show, arguments.dimension, arguments.cut, theme=arguments.theme)
+    require_sheets(options)
+    source, world = files.read(arguments.file), files.world(arguments.file)
+    layers = tuple(sorted(arguments.show))
+    compiled = pipeline.compile(source, world, params=dict(arguments.params), show=layers)
+    show(compiled.diagnostics)
+    may_be_shown = compiled.ok or arguments.best_effort
+    if may_be_shown and compiled.model is not None and compiled.drawing is not None:
+        drawn = picture(Job(compiled.model, compiled.drawing, options=options))
+        name, out = arguments.protocol, sys.stdout
+        if name == "auto":
+            has_colour = wants_colour(out, os.environ)
+            name = protocol(os.environ, out.encoding, is_terminal=out.isatty(), has_colour=has_colour)
+        files.write(files.STANDARD, _shown(drawn, name, _screen(arguments.width)))
+    return exit_code(compiled.diagnostics) or int(not compiled.ok)
+
+
+def _screen(width: int | None) -> Screen:
+    """Returns the room for a picture; in a file up to twice as high as `width`."""
+    import shutil
+
+    from aidl_lang.tools.terminal import Screen, cell_size
+
+    size = shutil.get_terminal_size()
+    rows = max(1, size.lines - _PROMPT)
+    if sys.stdout.isatty():
+        return Screen(min(width or size.columns, size.columns), rows, cell_size(sys.stdout.fileno()))
+    return Screen(width or size.columns, width or rows)
+
+
+def _shown(picture: Picture, name: str, screen: Screen) -> bytes:
+    from aidl_lang.export.marks import coarse, framed
+    from aidl_lang.tools.terminal import GRAPHICS, fit, iterm, kitty, sixel
+
+    extent = fit(picture.width, picture.height, screen)
+    across, down = extent.pixels
+    picture = framed(picture, across / down)
+    if name not in GRAPHICS:
+        return _characters(picture, name, extent)
+    png = _png(coarse(picture, picture.width / across), max(across, down))
+    if name == "sixel":
+        return f"{sixel(png)}\n".encode()
+    return f"{(kitty if name == 'kitty' else iterm)(png, extent.columns, extent.rows)}\n".encode()
+
+
+def _characters(picture: Picture, name: str, extent: Screen) -> bytes:
+    from aidl_lang.export.marks import coarse, outlined, separated
+    from aidl_lang.tools.terminal import PIXELS, cells, has_true_colour, text, written
+
+    across, down = extent.columns * PIXELS[name][0], extent.rows * PIXELS[name][1]
+    picture, texts = separated(picture if name == "blocks" else outlined(picture))
+    png = _png(coarse(picture, picture.width / across), _SAMPLES * max(across, down))
+    grid = cells(name, png, extent.columns, extent.rows)
+    labels = [_label(mark, picture, extent) for mark in texts]
+    grid = written(grid, labels, only_ascii=name == "ascii")
+    lines = text(grid, true_colour=has_true_colour(os.environ))
+    return lines.encode(sys.stdout.encoding, "replace")
+
+
+def _label(mark: Text, picture: Picture, extent: Screen) -> Label:
+    """Returns a text of the picture in cells. A turned one is written level, about its middle."""
+    from aidl_lang.common.colors import rgb
+    from aidl_lang.tools.terminal import Label
+
+    left, bottom, right, top = mark.box
+    edge = {"start": left, "middle": (left + right) / 2, "end": right}
+    anchor = "middle" if mark.angle else mark.anchor
+    column = (edge[anchor] - picture.box[0]) / picture.width * extent.columns
+    row = (picture.box[3] - (bottom + top) / 2) / picture.height * extent.rows
+    return Label(mark.text, column, row, anchor, rgb(mark.color))
+
+
+def _png(picture: Picture, pixels: int) -> bytes:
+    from aidl_lang.export import render
+    from aidl_lang.export.job import Options
+
+    return render(picture, ".png", Options(pixels=pixels))

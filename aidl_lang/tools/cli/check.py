@@ -125,25 +125,13 @@ def register_check(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("files", nargs="+", metavar="FILE", help="a program; - reads standard input")
     flag(parser, "--fix", "write the program with the fixes applied that are sure")
     how_far = parser.add_mutually_exclusive_group()
-    flag(
-        how_far,
-        "--ends",
-        "try both ends of the range of each param as well, one at a time, and tell how far each may go",
-    )
+    about = "try both ends of the range of each param as well, one at a time, and tell how far each may go"
+    flag(how_far, "--ends", about)
     flag(how_far, "--range", "walk each param over its range, and tell where something changes kind")
-    how_far.add_argument(
-        "--pairs",
-        dest="range",
-        action="store_const",
-        const="pairs",
-        help="as --range, and two params at a time",
-    )
-    how_far.add_argument(
-        "--no-solve",
-        dest="solve",
-        action="store_false",
-        help="find only what can be found without solving and drawing, which is quick",
-    )
+    about = "as --range, and two params at a time"
+    how_far.add_argument("--pairs", dest="range", action="store_const", const="pairs", help=about)
+    about = "find only what can be found without solving and drawing, which is quick"
+    how_far.add_argument("--no-solve", dest="solve", action="store_false", help=about)
     flag(parser, "--json", "print the diagnostics as JSON")
     add_variant(parser)
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from aidl_lang.common.diagnostics import Diagnostic
@@ -13,7 +13,6 @@ from aidl_lang.tools.cli.files import UseError, exit_code, print_json, say, show
 from aidl_lang.tools.cli.options import add_params, add_pixels, add_program, flag, value
 
 if TYPE_CHECKING:
-    from aidl_lang.common.source import SourceFile
     from aidl_lang.export.comparison import Comparison
     from aidl_lang.geometry.boolean import Contact
     from aidl_lang.geometry.curves import Vec
@@ -32,16 +31,8 @@ def register_measure(parser: argparse.ArgumentParser) -> None:
         "paths", nargs="*", metavar="PATH", help="a structure or a geometry (default: each body)"
     )
     add_params(parser)
-    value(
-        parser,
-        "--density",
-        "NAME=KG/M3",
-        "the density of a material; may be given several times",
-        _density,
-        [],
-        dest="densities",
-        action="append",
-    )
+    about = "the density of a material; may be given several times"
+    value(parser, "--density", "NAME=KG/M3", about, _density, [], dest="densities", action="append")
     flag(parser, "--json", "print everything as JSON, with all digits")
 
 
@@ -264,6 +255,8 @@ def _suffix(name: str, arguments: argparse.Namespace) -> str:
 
 def _comparison(arguments: argparse.Namespace) -> Comparison | int:
     """Returns the comparison, or the exit code if a side is wrong, which has been reported."""
+    from aidl_lang import pipeline
+
     names = arguments.before, arguments.after or arguments.before
     if arguments.after is None and not (arguments.params_before or arguments.params_after):
         raise UseError(
@@ -275,7 +268,8 @@ def _comparison(arguments: argparse.Namespace) -> Comparison | int:
     versions: list[Compiled] = []
     code = 0
     for name, own in zip(names, (arguments.params_before, arguments.params_after), strict=True):
-        compiled = _compiled(name, sources[name], dict(arguments.params) | dict(own))
+        params = dict(arguments.params) | dict(own)
+        compiled = pipeline.compile(sources[name], files.world(name), params=params)
         may_be_used = compiled.ok or arguments.best_effort
         if may_be_used and compiled.model is not None and compiled.drawing is not None:
             versions.append(compiled)
@@ -283,12 +277,6 @@ def _comparison(arguments: argparse.Namespace) -> Comparison | int:
             show([*compiled.errors, _refusal(name, compiled)], quiet=True)
             code = max(code, exit_code(compiled.errors), 1)
     return code or versions[0].compared(versions[1])
-
-
-def _compiled(name: str, source: SourceFile, params: Mapping[str, str]) -> Compiled:
-    from aidl_lang import pipeline
-
-    return pipeline.compile(source, files.world(name), params=params)
 
 
 def _refusal(name: str, compiled: Compiled) -> Diagnostic:
