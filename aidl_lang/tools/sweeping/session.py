@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import shlex
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from dataclasses import field, replace
 from pathlib import Path, PurePath
 from typing import TYPE_CHECKING, Any
@@ -44,6 +44,7 @@ from aidl_lang.tools.sweeping.plan import (
     planned,
     read_table,
     refused,
+    shown,
     spelled,
 )
 from aidl_lang.tools.sweeping.working import Making, variant
@@ -121,8 +122,6 @@ def reproducing(
 
 
 def _written(given: Value) -> str:
-    from aidl_lang.tools.sweeping.plan import shown
-
     return repr(given) if isinstance(given, float) and not given.is_integer() else shown(given)
 
 
@@ -155,10 +154,8 @@ _Done = tuple[Variant, Outcome, bool]
 
 def _broken(broke: Broke) -> Outcome:
     """Returns the outcome of a variant that met a limit, or a bug."""
-    if broke.limit is not None:
-        return Outcome("broken", False, (Fault("E0603", BROKEN[broke.limit]),))
-    message = f"compiling ended in {type(broke.error).__name__}: {str(broke.error)[:200]}"
-    return Outcome("broken", False, (Fault("E0603", message),))
+    why = f"compiling ended in {type(broke.error).__name__}: {str(broke.error)[:200]}"
+    return Outcome("broken", False, (Fault("E0603", why if broke.limit is None else BROKEN[broke.limit]),))
 
 
 PICTURE = 320
@@ -384,7 +381,7 @@ class Sweep:
     def __init__(self, job: Job, engine: tuple[str, int | None]) -> None:
         self._job, self._engine = job, engine
         self._session: Session | None = None
-        self._running: Iterator[Row] | None = None
+        self._running = self._rows()
 
     @classmethod
     def begun(
@@ -421,26 +418,15 @@ class Sweep:
 
     def __iter__(self) -> Iterator[Row]:
         place = 0
-        while True:
-            known = self._session.rows if self._session is not None else []
-            if place < len(known):
-                yield known[place]
-                place += 1
-            elif not self._step():
-                return
+        while place < len(self._known) or next(self._running, None) is not None:
+            yield self._known[place]
+            place += 1
 
-    def _step(self) -> bool:
-        """Has one more result come in; False if there is none."""
-        if self._running is None:
-            if self._session is not None:
-                return False
-            self._running = self._rows()
-        if next(self._running, None) is None:
-            self._running = None
-            return False
-        return True
+    @property
+    def _known(self) -> list[Row]:
+        return self._session.rows if self._session is not None else []
 
-    def _rows(self) -> Iterator[Row]:
+    def _rows(self) -> Generator[Row, None, None]:
         workers: Engine = engine(*self._engine, len(self._job.plan), self._job.outputs.names)
         self._session = Session(self._job, workers)
         try:
@@ -450,9 +436,8 @@ class Sweep:
 
     def close(self) -> None:
         """Gives up what is not done. With outputs or a cache, what is done is kept."""
-        if self._running is not None:
-            self._running.close()  # type: ignore[attr-defined]
-            self._running = None
+        if self._session is not None:
+            self._running.close()
 
     def __enter__(self) -> Sweep:
         return self
@@ -489,8 +474,7 @@ class Sweep:
         return self.to_arrow().to_pandas()
 
     def __repr__(self) -> str:
-        done = len(self._session.rows) if self._session is not None else 0
-        return f"<aidl_lang.Sweep {done} of {len(self)} variants>"
+        return f"<aidl_lang.Sweep {len(self._known)} of {len(self)} variants>"
 
 
 def _axis(name: str, values: object, knobs: Sequence[Knob], *, is_drawn: bool) -> Axis:

@@ -18,7 +18,7 @@ from aidl_lang.common.prose import counted
 from aidl_lang.common.records import record
 from aidl_lang.common.render import escape
 from aidl_lang.export.pdf import FAMILY, POINTS_PER_MM, font_file
-from aidl_lang.tools.sweeping.outputs import Columns, Row, as_mapping
+from aidl_lang.tools.sweeping.outputs import Columns, Row
 from aidl_lang.tools.sweeping.plan import shown
 from aidl_lang.version import __version__
 
@@ -177,9 +177,8 @@ def page(title: str, columns: Columns, rows: Sequence[Row]) -> bytes:
 
 
 def _entry(columns: Columns, row: Row) -> dict[str, Any]:
-    cells = dict(as_mapping(columns.names, columns.cells(row)))
     return {
-        "cells": cells,
+        "cells": columns.by_name(row),
         "ok": row.ok,
         "message": row.message,
         "picture": b64encode(row.outcome.picture).decode(),
