@@ -318,7 +318,13 @@ class OpenAI(Server):
     def _send(self, messages: Sequence[Message], sampling: Sampling) -> Any:
         said = [{"role": message.role, "content": _content(message)} for message in messages]
         while True:  # it adapts twice at most
-            options = self._options(sampling)
+            wanted = {
+                "seed": sampling.seed,
+                "temperature": sampling.temperature,
+                self._limit: sampling.max_tokens,
+                "stream_options": {"include_usage": True} if self._tells_usage else None,
+            }
+            options: dict[str, Any] = {name: v for name, v in wanted.items() if v is not None}
             try:
                 return self._client.chat.completions.create(
                     model=self._model, messages=said, stream=True, extra_body=dict(sampling.extra), **options
@@ -326,15 +332,6 @@ class OpenAI(Server):
             except (self._sdk.BadRequestError, self._sdk.UnprocessableEntityError) as error:
                 if not self._adapt(self._words(error.body), options):
                     raise
-
-    def _options(self, sampling: Sampling) -> dict[str, object]:
-        options: dict[str, object] = {
-            "seed": sampling.seed,
-            "temperature": sampling.temperature,
-            self._limit: sampling.max_tokens,
-            "stream_options": {"include_usage": True} if self._tells_usage else None,
-        }
-        return {name: value for name, value in options.items() if value is not None}
 
     def _adapt(self, said: str, sent: Mapping[str, object]) -> bool:
         """Drops what a server refused from further requests, if it is a matter of the protocol."""
