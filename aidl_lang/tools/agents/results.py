@@ -14,8 +14,8 @@ from aidl_lang.common.prose import rounded
 from aidl_lang.common.records import record
 from aidl_lang.common.source import Span
 from aidl_lang.geometry.boolean import Contact
+from aidl_lang.tools.reference import forms
 from aidl_lang.tools.reference.collect import Entry, search
-from aidl_lang.tools.reference.pages import forms
 
 MOST_FINDINGS = 50
 Status: TypeAlias = Literal["solved", "partial", "failed", "wrong"]

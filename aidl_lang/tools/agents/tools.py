@@ -129,7 +129,7 @@ class Tools:
         ] = "full",
     ) -> Page:
         """The AIDL language on a few pages. Read it before you write the first program."""
-        from aidl_lang.tools.reference.pages import guide
+        from aidl_lang.tools.reference import guide
 
         whole = guide(Variant(variant))
         head, *parts = whole.split("\n## ")
@@ -161,8 +161,8 @@ class Tools:
         """All there is to say of one name of the AIDL library (forms, parts, what is held, an example), or of
         the code of a diagnostic (the mistake, and the mended program).
         """
+        from aidl_lang.tools.reference import entry_blocks
         from aidl_lang.tools.reference.collect import reference
-        from aidl_lang.tools.reference.pages import entry_blocks
 
         code = name.strip("[] ").upper()
         if code in resources.codes():

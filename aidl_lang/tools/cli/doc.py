@@ -84,8 +84,8 @@ def register_doc(parser: argparse.ArgumentParser) -> None:
 
 def run_doc(arguments: argparse.Namespace) -> int:
     from aidl_lang.common.render import TerminalStyle, wants_colour
+    from aidl_lang.tools.reference import to_dict
     from aidl_lang.tools.reference.collect import reference
-    from aidl_lang.tools.reference.pages import to_dict
 
     known, words = reference(), " ".join(arguments.name)
     if not words and arguments.picture:
@@ -113,7 +113,7 @@ def run_doc(arguments: argparse.Namespace) -> int:
         else:
             _list_all(known, style)
     elif arguments.picture:
-        from aidl_lang.tools.reference.pages import picture
+        from aidl_lang.tools.reference import picture
 
         files.require_directory(arguments.picture)
         files.write(arguments.picture, picture(found))
@@ -160,7 +160,7 @@ def _list(lines: Sequence[tuple[str, str]], style: TerminalStyle) -> None:
 
 def _show(entry: Entry, known: Reference, asked: str, style: TerminalStyle) -> None:
     from aidl_lang.common.names import find
-    from aidl_lang.tools.reference.pages import facts, forms
+    from aidl_lang.tools.reference import facts, forms
 
     if (synonym := find(asked, known.aliases)) is not None and asked not in known.entries:
         print(f"`{synonym}` is another name for {style.strong(entry.name)}.\n")
@@ -185,7 +185,7 @@ def register_guide(parser: argparse.ArgumentParser) -> None:
 
 
 def run_guide(arguments: argparse.Namespace) -> int:
-    from aidl_lang.tools.reference.pages import full_guide, guide, guide_with
+    from aidl_lang.tools.reference import full_guide, guide, guide_with
 
     if arguments.topics is not None:
         print(guide_with(_topics(arguments.topics)), end="")

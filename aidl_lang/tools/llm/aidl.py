@@ -28,7 +28,7 @@ from aidl_lang.tools.llm import generation
 from aidl_lang.tools.llm.intent import Ledger, Loss, request
 from aidl_lang.tools.llm.messages import Image, Verdict
 from aidl_lang.tools.mending import Mended, mend
-from aidl_lang.tools.reference.pages import guide
+from aidl_lang.tools.reference import guide
 
 # --- Writes a changed program as a minimal edit of the one before: what is as it was keeps its text.
 
@@ -277,6 +277,10 @@ class AidlConversation:
         missing = self.ledger.missing
         is_partial = self.language.plans and compiled.ok and _is_partial(source, compiled)
         distance = (int(not compiled.ok), -generation.STAGES.index(stage) if wrong else 0, int(is_partial))
+        numbers: dict[str, float] = {}
+        if compiled.model is not None:
+            detached = sum(d.code == "W0705" for d in compiled.diagnostics)
+            numbers = counted(compiled.model) | {"detached": detached}
         pictures: tuple[Image, ...] = ()
         if is_partial:
             options = Options(pixels=_PIXELS, show=frozenset({"plan", "names"}))
@@ -292,7 +296,7 @@ class AidlConversation:
             images=pictures,
             missing=tuple(loss.phrase for loss in missing),
             weight=(*distance, len(wrong), len(missing), len(warnings)),
-            numbers=_numbers(compiled),
+            numbers=numbers,
             compiled=compiled,
         )
 
@@ -339,12 +343,6 @@ def _is_partial(source: SourceFile, compiled: Compiled) -> bool:
     if any(structure.is_empty for structure in compiled.model.root.walk()):
         return True
     return any(isinstance(node, ast.Todo) for node in ast.walk(parser.parse(source).module))
-
-
-def _numbers(compiled: Compiled) -> dict[str, float]:
-    if compiled.model is None:
-        return {}
-    return counted(compiled.model) | {"detached": sum(d.code == "W0705" for d in compiled.diagnostics)}
 
 
 def counted(model: SolvedModel) -> dict[str, float]:

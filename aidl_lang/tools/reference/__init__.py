@@ -1,4 +1,8 @@
-"""The entries of the reference as Markdown and as data, pictures of their examples, and the guide."""
+"""Documentation generated from the sources: the library's own comments, the sections on built-ins.
+
+`collect` gathers, `signatures` reads definitions; here stand the entries as Markdown and as data, pictures of
+their examples, and the guide.
+"""
 
 from __future__ import annotations
 
