@@ -19,6 +19,7 @@ from typing import Annotated, Any, Literal, Union, get_args, get_origin, get_typ
 
 from aidl_lang.common.diagnostics import AidlError, Diagnostic
 from aidl_lang.common.names import nearest
+from aidl_lang.common.prose import did_you_mean
 from aidl_lang.common.records import record
 from aidl_lang.common.render import compact
 from aidl_lang.tools.agents.results import Result, data, findings, shown_fields
@@ -250,51 +251,41 @@ class Answer:
 def answer(workshop: Tools, name: str, arguments: Mapping[str, object]) -> Answer:
     """Returns the answer of a tool, also for a call that cannot be answered."""
     try:
-        result = call(workshop, name, arguments)
+        known = {tool.name: tool for tool in tools()}
+        if name not in known:
+            near = did_you_mean(nearest(name[:_SHOWN], known))
+            raise refusal("E0944", f"there is no tool `{name[:_SHOWN]}`", *near, f"tools: {', '.join(known)}")
+        result: Result = getattr(workshop, name)(**_bound(known[name], arguments))
     except AidlError as error:
         listed = findings(error.diagnostics)
         return Answer(compact(error.diagnostics), {"findings": data(listed)}, is_error=True)
     return Answer(result.text, data(result), result.pictures)
 
 
-def call(workshop: Tools, name: str, arguments: Mapping[str, object]) -> Result:
-    """Calls a tool. An argument that is null counts as left out. Raises RefusalError."""
-    tool = find(name)
-    result: Result = getattr(workshop, tool.name)(**bound(tool, arguments))
-    return result
-
-
-def find(name: str) -> Tool:
-    """Returns the tool of a name. Raises RefusalError."""
-    known = {tool.name: tool for tool in tools()}
-    if name not in known:
-        near = [f"did you mean `{n}`?" for n in nearest(name[:_SHOWN], known)]
-        raise refusal("E0944", f"there is no tool `{name[:_SHOWN]}`", *near, f"tools: {', '.join(known)}")
-    return known[name]
-
-
-def bound(tool: Tool, arguments: Mapping[str, object]) -> dict[str, object]:
-    """Returns the arguments as the function takes them. Raises RefusalError for any that does not fit."""
+def _bound(tool: Tool, arguments: Mapping[str, object]) -> dict[str, object]:
+    """Returns the arguments as the function takes them; one that is null counts as left out. Raises
+    RefusalError for any that does not fit.
+    """
     given = {name: value for name, value in arguments.items() if value is not None}
     known = {parameter.name: parameter for parameter in tool.parameters}
     for name in given:
         if name not in known:
-            near = [f"did you mean `{n}`?" for n in nearest(name[:_SHOWN], known)]
+            near = did_you_mean(nearest(name[:_SHOWN], known))
             message = f"`{tool.name}` has no parameter `{name[:_SHOWN]}`"
             raise refusal("E0944", message, *near, f"parameters: {', '.join(known)}")
     for parameter in tool.parameters:
         if parameter.is_required and parameter.name not in given:
             raise refusal("E0944", f"`{tool.name}` needs `{parameter.name}`", parameter.description)
-    return {name: _argument(tool, known[name], value) for name, value in given.items()}
-
-
-def _argument(tool: Tool, parameter: Parameter, value: object) -> object:
-    try:
-        return _converted(value, parameter.kind)
-    except _MisfitError as misfit:
-        wanted, given = misfit.args
-        message = f"`{parameter.name}` of `{tool.name}` takes {wanted}, not {_shown(given)}"
-        raise refusal("E0944", message, parameter.description) from None
+    taken: dict[str, object] = {}
+    for name, value in given.items():
+        try:
+            taken[name] = _converted(value, known[name].kind)
+        except _MisfitError as misfit:
+            wanted, shown = misfit.args[0], json.dumps(misfit.args[1])
+            shown = shown if len(shown) <= _SHOWN else shown[: _SHOWN - 1] + "…"
+            message = f"`{name}` of `{tool.name}` takes {wanted}, not `{shown}`"
+            raise refusal("E0944", message, known[name].description) from None
+    return taken
 
 
 class _MisfitError(Exception):
@@ -367,11 +358,6 @@ def _text(value: object) -> str:
     except UnicodeEncodeError:
         raise _MisfitError("a text in Unicode", "one with half a surrogate pair") from None
     return value
-
-
-def _shown(value: object) -> str:
-    text = json.dumps(value)
-    return f"`{text if len(text) <= _SHOWN else text[: _SHOWN - 1] + '…'}`"
 
 
 # --- Runs calls in processes of their own: a program that hangs or crashes harms nothing else.

@@ -45,10 +45,18 @@ Json = dict[str, Any]
 
 
 def restricted(document: Json, path: str) -> Json:
-    """Returns the document with the structure at a path as its root, and only its data. Raises KeyError."""
-    root = next((s for s in _walk(document["root"]) if s["path"] == path), None)
+    """Returns the document with the structure at a path, with or without the name of the root, as its root,
+    and only its data. Raises RefusalError.
+    """
+    whole = document["root"]["path"]
+    known = {s["path"]: s for s in _walk(document["root"])}
+    root = known.get(path) or known.get(f"{whole}.{path}")
     if root is None:
-        raise KeyError(path)
+        short_names = {name.removeprefix(f"{whole}."): name for name in known}
+        near = did_you_mean(short_names[name] for name in nearest(path, short_names))
+        message = f"there is no structure `{path[:200]}` in the model"
+        raise refusal("E0919", message, *near, f"there is {some_of(list(known))}")
+    path = root["path"]
 
     def is_inside(other: str) -> bool:
         return other == path or other.startswith(f"{path}.")
@@ -65,11 +73,6 @@ def restricted(document: Json, path: str) -> Json:
         "regions": {name: region for name, region in document["regions"].items() if is_inside(name)},
         "pairs": [p for p in document["pairs"] if is_inside(p["a"]) or is_inside(p["b"])],
     }
-
-
-def paths(document: Json) -> list[str]:
-    """Returns the paths of all structures, in order of writing."""
-    return [s["path"] for s in _walk(document["root"])]
 
 
 def shortened(document: Json, most: int) -> tuple[Json, str | None]:
@@ -298,18 +301,8 @@ class _Making:
             return None, None
         document = to_dict(compiled.model, compiled.drawing, compiled.diagnostics)
         if path is not None:
-            document = self._restricted(document, path)
+            document = restricted(document, path)
         return shortened(document, self.limits.text)
-
-    def _restricted(self, document: Json, path: str) -> Json:
-        root, known = document["root"]["path"], paths(document)
-        for wanted in (path, f"{root}.{path}"):
-            if wanted in known:
-                return restricted(document, wanted)
-        short_names = {name.removeprefix(f"{root}."): name for name in known}
-        near = [hint for name in nearest(path, short_names) for hint in did_you_mean([short_names[name]])]
-        message = f"there is no structure `{path[:200]}` in the model"
-        raise refusal("E0919", message, *near, f"there is {some_of(known)}")
 
     def png(self) -> bytes | None:
         """Returns the picture; of a program that did not solve, its last state."""

@@ -227,7 +227,7 @@ def find(known: tuple[Knob, ...], name: str) -> Knob:
     for wanted in (name, name.partition(".")[2]):
         if (path := names.find(wanted, by_path)) is not None:
             return by_path[path]
-    near = [hint for path in names.nearest(name, by_path) for hint in did_you_mean([path])]
+    near = did_you_mean(names.nearest(name, by_path))
     raise refusal(
         "E0945",
         f"there is no param `{name}`",
