@@ -64,7 +64,10 @@ def errors(compiled: Compiled) -> str:
     count = counted(len(wrong), "error")
     blocks = [f"The program is wrong: {count}, the first of them in the check of {stage}.", compact(wrong)]
     if stage == "solve" and compiled.model is not None:
-        blocks.append(_freedom(compiled.model))
+        degrees = "unknown" if compiled.model.degrees is None else compiled.model.degrees
+        motions = report(compiled.model, _MOST)
+        left = f"Degrees of freedom left beside these constraints: {degrees}"
+        blocks.append("\n- ".join([left, *motions]))
     return "\n\n".join(blocks)
 
 
@@ -86,13 +89,6 @@ def remarks(compiled: Compiled, *, may_constrain: bool) -> str:
 def floats(model: SolvedModel) -> tuple[str, ...]:
     """Returns paths, without the root, of structures that no constraint places."""
     return tuple(path.removeprefix(f"{model.root.path}.") for path in model.mobility().floating)
-
-
-def _freedom(model: SolvedModel) -> str:
-    degrees = "unknown" if model.degrees is None else str(model.degrees)
-    return f"Degrees of freedom left beside these constraints: {degrees}" + "".join(
-        f"\n- {each}" for each in report(model, _MOST)
-    )
 
 
 def mended(before: str, after: str, titles: Sequence[str]) -> str:
@@ -169,16 +165,15 @@ class Attempt:
 
 @record()
 class Generation:
-    """The result of a task: the attempts, and the verdict on the program kept (None without any program)."""
+    """The result of a task: the attempts, the verdict on the program kept (None without any program), the
+    conversation as it was sent, and the reason why no further reply could be had.
+    """
 
     task: Task
     attempts: tuple[Attempt, ...]
     verdict: Verdict | None
     messages: tuple[Message, ...]
-    """The conversation as it was sent."""
-
     failure: Diagnostic | None = None
-    """The reason why no further reply could be had."""
 
     @property
     def ok(self) -> bool:

@@ -175,17 +175,19 @@ class Finish(StrEnum):
 
 @record()
 class Reply:
+    """What a model has answered.
+
+    model    as the server names it
+    seconds  until the whole reply was there
+    date     the day of the reply, as in 2026-01-31
+    """
+
     text: str
     usage: Usage
     finish: Finish
     model: str
-    """The model that answered, as the server names it."""
-
     seconds: float | None = None
-    """Time until the whole reply was there."""
-
     date: str | None = None
-    """The day of the reply, as in 2026-01-31."""
 
 
 class ProviderError(AidlError):
@@ -265,39 +267,31 @@ def find_program(text: str, fences: Sequence[str], reads: Callable[[str], bool])
 
 @record()
 class Verdict:
-    """The judgement of one program."""
+    """The judgement of one program.
+
+    stage       the stage that failed, or `done`
+    feedback    for the model: the errors and their remedies; for a right program, remarks or nothing
+    program     the program after mending
+    fixes       the titles of the fixes that were made
+    codes       the codes of the errors left
+    is_partial  true for a program to be continued: the model is shown its state, and asked to go on
+    images      pictures that go with the feedback
+    missing     intents of earlier programs of the conversation that this one lost, a phrase each
+    weight      distance from right, to choose the best of several: less is better
+    numbers     counts of structures, constraints, degrees
+    """
 
     ok: bool
     stage: str
-    """The stage that failed, or `done`."""
-
     feedback: str
-    """For the model: the errors and their remedies; for a right program, remarks or nothing."""
-
     program: str
-    """The program after mending."""
-
     fixes: tuple[str, ...] = ()
-    """The titles of the fixes that were made."""
-
     codes: tuple[str, ...] = ()
-    """The codes of the errors left."""
-
     is_partial: bool = False
-    """True for a program to be continued: the model is shown its state, and asked to go on."""
-
     images: tuple[Image, ...] = ()
-    """Pictures that go with the feedback."""
-
     missing: tuple[str, ...] = ()
-    """Intents of earlier programs of the conversation that this one lost, a phrase each."""
-
     weight: tuple[int, ...] = ()
-    """Distance from right, to choose the best of several: less is better."""
-
     numbers: Mapping[str, float] = field(default_factory=dict)
-    """Counts of structures, constraints, degrees."""
-
     compiled: Compiled | None = None
 
 

@@ -12,15 +12,7 @@ from aidl_lang.common.source import SourceFile
 from aidl_lang.common.world import World
 from aidl_lang.pipeline import Compiled, Settings, front
 from aidl_lang.tools.llm.intent.changes import Changes, Fate, compare, strength
-from aidl_lang.tools.llm.intent.inventory import (
-    Inventory,
-    Item,
-    Kind,
-    Path,
-    inventory,
-    names_in,
-    unnumbered,
-)
+from aidl_lang.tools.llm.intent.inventory import Inventory, Item, Kind, Path, inventory, names_in, unnumbered
 from aidl_lang.tools.llm.intent.placing import UNTRIED, Finding, Prober, State, dotted, new_errors, stands
 
 # --- A loss of a conversation.

@@ -339,7 +339,8 @@ def inventory(
 ) -> Inventory:
     """Returns the intents of a program, with its `diagnostics` and its `model`."""
     taker = _Taker(resolution)
-    taker.statements(resolution.main.statements, _Place((), (), {}))
+    for statement in resolution.main.statements:
+        taker.statement(statement, _Place((), (), {}))
     items = (item for record in taker.records for item in taker.items_of(record))
     source = resolution.main.source
     here = [d for d in diagnostics if d.span is not None and d.span.source.text == source.text]
@@ -407,11 +408,7 @@ class _Taker:
 
     # --- First: what there is --------------------------------------------------------------------
 
-    def statements(self, statements: Sequence[ast.Statement], place: _Place) -> None:
-        for statement in statements:
-            self._statement(statement, place)
-
-    def _statement(self, node: ast.Statement, place: _Place) -> None:
+    def statement(self, node: ast.Statement, place: _Place) -> None:
         match node:
             case ast.Structure():
                 self.records.append((node, place))
@@ -445,13 +442,15 @@ class _Taker:
 
     def _body(self, body: ast.Block, place: _Place) -> None:
         self.bodies.setdefault(place.home, body)
-        self.statements(body.statements, place)
+        for statement in body.statements:
+            self.statement(statement, place)
 
     def _block(
         self, block: ast.Block, place: _Place, opening: str, key: Key, loops: Mapping[str, int]
     ) -> None:
         inner = _Place(place.home, (*place.steps, Step(block, opening, key)), loops)
-        self.statements(block.statements, inner)
+        for statement in block.statements:
+            self.statement(statement, inner)
 
     def _kind(self, node: ast.Assign) -> Kind | None:
         """Returns the kind of thing that an assignment makes; None if it only names a value."""
@@ -528,25 +527,21 @@ class _Taker:
             turns = name == "angle" and not _is_level(argument.value)
             turns |= name == "rotatable" and isinstance(argument.value, ast.Boolean) and argument.value.value
             if turns:
-                yield self._turn(name, argument, argument.value, argument.span, place, node)
+                yield self._turn(name, argument, place, node)
 
     def _rotated(self, node: ast.Structure | ast.Assign, place: _Place) -> Iterator[Item]:
-        angle = node.placement.rotated if node.placement else None
-        if angle is not None and not _is_level(angle):
-            assert node.placement is not None
-            yield self._turn("rotated", node.placement, angle, angle.span, place, node)
+        placement = node.placement
+        if placement is not None and placement.rotated is not None and not _is_level(placement.rotated):
+            yield self._turn("rotated", placement, place, node)
 
     def _turn(
-        self,
-        word: str,
-        node: ast.Node,
-        angle: ast.Expression,
-        span: Span,
-        place: _Place,
-        owner: ast.Structure | ast.Assign,
+        self, word: str, node: ast.Placement | ast.Argument, place: _Place, owner: ast.Structure | ast.Assign
     ) -> Item:
+        angle, between = (node.value, ": ") if isinstance(node, ast.Argument) else (node.rotated, " ")
+        assert angle is not None
+        span = node.span if isinstance(node, ast.Argument) else angle.span
         path = (*place.home, *own_path(owner.name, owner.indices))
-        said = f"rotated {angle.span.one_line}" if word == "rotated" else f"{word}: {angle.span.one_line}"
+        said = f"{word}{between}{angle.span.one_line}"
         key = (word, ("ref", path, ()), self.reader(place).key(angle))
         return self._item(Kind.ROTATION, node, span, place, key, thing=path, word=word, text=said)
 

@@ -7,6 +7,7 @@ from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from enum import StrEnum
+from itertools import takewhile
 
 from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.records import record
@@ -88,10 +89,8 @@ def _new_names(item: Item, changes: Changes, home: Path) -> Iterator[tuple[ast.N
 
 def _seen_from(path: Path, home: Path) -> str:
     """Returns the shortest way to refer to a thing in a structure."""
-    common = 0
-    while common < min(len(path) - 1, len(home)) and path[common] == home[common]:
-        common += 1
-    return dotted(path[common:])
+    common = takewhile(lambda pair: pair[0] == pair[1], zip(path[:-1], home, strict=False))
+    return dotted(path[len(list(common)) :])
 
 
 def dotted(path: Path) -> str:
