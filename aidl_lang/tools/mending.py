@@ -67,7 +67,9 @@ class _Mender:
         seen: dict[object, Mended] = {_outlook(now): now}
         try:
             for _ in range(_STEPS):
-                better = self._better(now)
+                sure = [d for d in now.diagnostics if d.fix is not None and d.fix.is_sure]
+                tried = (self._after(now, part) for part in _parts(sure))
+                better = next((after for after in tried if after is not None), None)
                 if better is None:
                     break
                 if (before := seen.setdefault(_outlook(better), better)) is not better:
@@ -76,12 +78,6 @@ class _Mender:
         except _OutOfTimeError:
             pass
         return now
-
-    def _better(self, now: Mended) -> Mended | None:
-        for part in _parts([d for d in now.diagnostics if d.fix is not None and d.fix.is_sure]):
-            if (after := self._after(now, part)) is not None:
-                return after
-        return None
 
     def _after(self, now: Mended, part: Sequence[Diagnostic]) -> Mended | None:
         """Returns the program after some fixes and those that they bring to light; None if it is worse."""

@@ -52,12 +52,8 @@ _PATIENCE = 1.0
 """Seconds after which progress is shown."""
 
 
-@record()
-class Target:
-    """A file to write and the format of its content."""
-
-    name: str
-    suffix: str
+Target = tuple[str, str]
+"""The name of a file to write, and the format of its content."""
 
 
 @record()
@@ -98,11 +94,11 @@ def targets(arguments: argparse.Namespace) -> tuple[Target, ...]:
     from aidl_lang.export.job import is_pattern
 
     names = arguments.output or [_beside(arguments.file, _DEFAULT_FORMAT)]
-    found = tuple(Target(name, _suffix(name, arguments.format)) for name in names)
-    for target in found:
-        if not is_pattern(target.name):
-            files.require_directory(target.name)
-    files.require_unread(target.name for target in found)
+    found = tuple((name, _suffix(name, arguments.format)) for name in names)
+    for name in names:
+        if not is_pattern(name):
+            files.require_directory(name)
+    files.require_unread(names)
     return found
 
 
@@ -140,16 +136,16 @@ def _write(
     made: list[tuple[str, bytes]] = []
     notes: list[Diagnostic] = []
     writing = compiled.exporting(options, _Progress())
-    for target in outputs:
-        found, said = contents(writing, target.name, target.suffix)
-        require_one(target.name, len(found))
-        if target.suffix != ".json" and any(note.code == "W0721" for note in said):
+    for target, suffix in outputs:
+        found, said = contents(writing, target, suffix)
+        require_one(target, len(found))
+        if suffix != ".json" and any(note.code == "W0721" for note in said):
             _keep_drawn(found)
         made += found
         notes += said
     _require_apart([name for name, _ in made])
     files.require_unread(name for name, _ in made)
-    if any(is_pattern(target.name) for target in outputs):
+    if any(is_pattern(target) for target, _ in outputs):
         files.make_directories(name for name, _ in made)
     for name, data in made:
         files.write(name, data)
@@ -338,9 +334,9 @@ def run_sheet(arguments: argparse.Namespace) -> int:
     start = time.perf_counter()
     source = files.read(arguments.file)
     names = arguments.output or [_beside(arguments.file, _SHEET)]
-    targets = [Target(name, sheet_suffix(name)) for name in names]
-    for target in targets:
-        files.require_directory(target.name)
+    suffixes = list(map(sheet_suffix, names))
+    for name in names:
+        files.require_directory(name)
     compiled = pipeline.compile(source, files.world(arguments.file), params=dict(arguments.params))
     show(compiled.diagnostics)
     if not compiled.ok:
@@ -348,12 +344,12 @@ def run_sheet(arguments: argparse.Namespace) -> int:
     draft = Draft(
         arguments.paper, arguments.landscape, arguments.scale, arguments.standard, arguments.date.strip()
     )
-    made = compiled.drafted([t.suffix for t in targets], draft, Options(pixels=arguments.pixels))
+    made = compiled.drafted(suffixes, draft, Options(pixels=arguments.pixels))
     written = []
-    for target, result in zip(targets, made, strict=True):
+    for target, result in zip(names, made, strict=True):
         datas = (result.data, *result.further)
-        require_one(target.name, len(datas))
-        for name, data in zip(file_names(target.name, len(datas)), datas, strict=True):
+        require_one(target, len(datas))
+        for name, data in zip(file_names(target, len(datas)), datas, strict=True):
             files.write(name, data)
             written.append(name)
     show(dict.fromkeys(note for result in made for note in result.notes))

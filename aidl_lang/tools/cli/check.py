@@ -288,15 +288,11 @@ def run_params(arguments: argparse.Namespace) -> int:
         names = ("path", "value", "low", "high", "choices", "step", "unit", "doc")
         print_json([{name: getattr(knob, name) for name in names} for knob in knobs])
     else:
-        _print_table(knobs)
+        rows = [_row(knob) for knob in knobs]
+        widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+        for row in rows:
+            print("  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip())
     return exit_code(diagnostics)
-
-
-def _print_table(knobs: tuple[Knob, ...]) -> None:
-    rows = [_row(knob) for knob in knobs]
-    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    for row in rows:
-        print("  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip())
 
 
 def _row(knob: Knob) -> tuple[str, ...]:

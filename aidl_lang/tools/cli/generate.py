@@ -209,8 +209,9 @@ def _number(value: int | None) -> str:
 def _deliver(arguments: argparse.Namespace, places: _Places, generation: Generation, name: str) -> int:
     verdict = generation.verdict
     if verdict is None:
-        last = generation.attempts[-1].reply
-        say(f"{name}no reply held a program; the last one begins: {_beginning(last.text)}")
+        last = re.sub(r"\s+", " ", generation.attempts[-1].reply.text.strip())
+        begins = last if len(last) <= 80 else last[:79] + "…"
+        say(f"{name}no reply held a program; the last one begins: {begins!r}")
         return 1
     program = verdict.program
     if arguments.edit:
@@ -264,11 +265,6 @@ def _draw(places: _Places, program: str, arguments: argparse.Namespace) -> None:
     compiled = pipeline.compile(SourceFile(os.path.basename(places.program), program), world)
     for name, data in [(name, compiled.export(Path(name).suffix.lower())) for name in places.drawings]:
         files.write(name, data)
-
-
-def _beginning(text: str) -> str:
-    line = re.sub(r"\s+", " ", text.strip())
-    return repr(line if len(line) <= 80 else line[:79] + "…")
 
 
 _PACKAGE = "aidl_eval"

@@ -128,7 +128,8 @@ def _block(part: Part) -> Iterator[str]:
     if part.volume is not None:
         rows.append(("volume", f"{_number(part.volume)} mm³"))
     if part.mass is not None:
-        rows.append(("mass", _mass(part.mass)))
+        grams = part.mass
+        rows.append(("mass", f"{_number(grams)} g" if grams < 1000 else f"{_number(grams / 1000)} kg"))
     for name, said in rows:
         yield f"  {name:<11}{said}"
 
@@ -181,10 +182,6 @@ def _number(value: float, tiny: float = 0.0) -> str:
 
 def _place(p: Vec, size: float) -> str:
     return f"({_number(p[0], 1e-9 * size)}, {_number(p[1], 1e-9 * size)})"
-
-
-def _mass(grams: float) -> str:
-    return f"{_number(grams)} g" if grams < 1000 else f"{_number(grams / 1000)} kg"
 
 
 def _print_json(compiled: Compiled, found: Survey) -> None:

@@ -250,27 +250,24 @@ def _keeps(source: SourceFile, knob: Knob, turn: Turn, base: Look, compiling: Co
     return not any(c.key in was for c in differences(before, after)) and bool(moved < 0.02)
 
 
-def _same(one: Span, other: Span) -> bool:
-    return (one.start, one.end, one.source.name) == (other.start, other.end, other.source.name)
-
-
 def _ended(source: SourceFile, knob: Knob, turn: Turn, compiling: Compiling) -> Remedy | None:
     """Returns a range that ends before a turn."""
-    is_low = turn.after < float(knob.value)
-    for node in ast.walk(parser.parse(source).module):
-        if isinstance(node, ast.Param) and knob.span is not None and _same(node.span, knob.span):
-            domain = node.domain
-            if not isinstance(domain, ast.Range) or domain.exclusive or turn.before == knob.value:
-                return None
-            end = (domain.start if is_low else domain.end).span
-            text = valued(knob, turn.before)
-            way = "begin" if is_low else "end"
-            remedy = Remedy(f"let the range of `{knob.path}` {way} at {text}", (end.start, end.end, text))
-            then = compiling(_edited(source, remedy), {})
-            low, high = next((k.range or (0, 0) for k in then.knobs if k.path == knob.path), (0.0, 0.0))
-            is_there = abs((low if is_low else high) - turn.before) < 1e-9 * max(1.0, abs(turn.before))
-            return remedy if then.ok and is_there else None
-    return None
+    is_low, at = turn.after < float(knob.value), knob.span
+    if at is None or at.source.name != source.name:
+        return None
+    params = (node for node in ast.walk(parser.parse(source).module) if isinstance(node, ast.Param))
+    declared = next((p for p in params if (p.span.start, p.span.end) == (at.start, at.end)), None)
+    domain = declared and declared.domain
+    if not isinstance(domain, ast.Range) or domain.exclusive or turn.before == knob.value:
+        return None
+    end = (domain.start if is_low else domain.end).span
+    text = valued(knob, turn.before)
+    way = "begin" if is_low else "end"
+    remedy = Remedy(f"let the range of `{knob.path}` {way} at {text}", (end.start, end.end, text))
+    then = compiling(_edited(source, remedy), {})
+    low, high = next((k.range or (0, 0) for k in then.knobs if k.path == knob.path), (0.0, 0.0))
+    is_there = abs((low if is_low else high) - turn.before) < 1e-9 * max(1.0, abs(turn.before))
+    return remedy if then.ok and is_there else None
 
 
 def turned(compiled: Compiled, seconds: float = LONGEST) -> list[Diagnostic]:
