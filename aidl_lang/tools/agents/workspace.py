@@ -104,17 +104,11 @@ class Workspace:
     def _measure(self, program: str, files: Mapping[str, str]) -> None:
         characters, most = len(program) + sum(map(len, files.values())), self.limits.characters
         if characters > most:
-            raise refusal(
-                "E0944",
-                f"the program and its files have {characters:,} characters, more than the {most:,} allowed",
-                "say what repeats with `for` and with templates",
-            )
+            many = f"the program and its files have {characters:,} characters, more than the {most:,} allowed"
+            raise refusal("E0944", many, "say what repeats with `for` and with templates")
         if len(files) > self.limits.files:
-            raise refusal(
-                "E0944",
-                f"{len(files):,} files were given, more than the {self.limits.files:,} allowed",
-                "give only those that the program imports",
-            )
+            many = f"{len(files):,} files were given, more than the {self.limits.files:,} allowed"
+            raise refusal("E0944", many, "give only those that the program imports")
 
 
 # --- Numbers as people type them, with units, sums and fractions: `12cm`, `80 + 20`, `1/2in`, `3 1/2in`.
@@ -228,12 +222,8 @@ def find(known: tuple[Knob, ...], name: str) -> Knob:
         if (path := names.find(wanted, by_path)) is not None:
             return by_path[path]
     near = did_you_mean(names.nearest(name, by_path))
-    raise refusal(
-        "E0945",
-        f"there is no param `{name}`",
-        *near,
-        f"params of this program: {first_few(ticked(by_path), _NAMED) or 'none'}",
-    )
+    there = f"params of this program: {first_few(ticked(by_path), _NAMED) or 'none'}"
+    raise refusal("E0945", f"there is no param `{name}`", *near, there)
 
 
 def require_in_range(compiled: Compiled, span: Span) -> None:

@@ -92,7 +92,6 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _is_unheard() -> bool:
-    """Tells whether a message was lost."""
     return isinstance(sys.stderr, _Messages) and sys.stderr.is_lost
 
 

@@ -171,11 +171,8 @@ def _require_apart(names: Sequence[str]) -> None:
     for name in names:
         place = Path(name).resolve()
         if name != files.STANDARD and place in seen:
-            raise UseError(
-                "E0927",
-                f"two outputs go to `{name}`, and nothing is written",
-                "give each a name of its own: further sheets, pages and parts have names made of it",
-            )
+            hint = "give each a name of its own: further sheets, pages and parts have names made of it"
+            raise UseError("E0927", f"two outputs go to `{name}`, and nothing is written", hint)
         seen.add(place)
 
 

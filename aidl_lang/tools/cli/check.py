@@ -52,7 +52,6 @@ def _progress(what: str, done: int, count: int) -> None:
 
 
 def tell(name: str, sweep: Sweep | Ranges) -> None:
-    """Prints the faults on standard output; then a summary."""
     from aidl_lang.common.render import escape
     from aidl_lang.tools.ends import Sweep, sentence
 
@@ -87,7 +86,6 @@ def _summary(sweep: Sweep) -> str:
 
 
 def data(name: str, sweep: Sweep | Ranges) -> dict[str, Any]:
-    """Returns the results for JSON."""
     from aidl_lang.tools.ends import Sweep, described
 
     if not isinstance(sweep, Sweep):

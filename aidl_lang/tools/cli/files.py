@@ -50,7 +50,6 @@ def say(line: str, end: str = "\n") -> None:
 
 
 def print_json(found: object, indent: int = 2) -> None:
-    """Prints data as JSON on standard output."""
     import json
 
     print(json.dumps(found, indent=indent, ensure_ascii=False))
@@ -104,7 +103,6 @@ def require_directory(name: str) -> None:
 
 
 def make_directories(names: Iterable[str]) -> None:
-    """Makes the directories of files that are missing."""
     for parent in dict.fromkeys(Path(name).parent for name in names if name != STANDARD):
         try:
             parent.mkdir(parents=True, exist_ok=True)

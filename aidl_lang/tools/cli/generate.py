@@ -73,13 +73,6 @@ class _Places:
     transcript: str | None
 
 
-def _of_run(name: str, number: int) -> str:
-    """Returns `phone.run-3.aidl` beside `phone.aidl`."""
-    path = Path(name)
-    stem, dot, rest = path.name.partition(".")
-    return str(path.with_name(f"{stem}.run-{number}{dot}{rest}"))
-
-
 def _places(arguments: argparse.Namespace) -> _Places:
     from aidl_lang.export import FORMATS
 
@@ -146,7 +139,10 @@ def _conversation(
     heard = _Heard(name)
 
     def of_run(file: str) -> str:
-        return _of_run(file, number + 1) if arguments.runs > 1 else file
+        """Returns `phone.run-3.aidl` beside `phone.aidl`."""
+        path = Path(file)
+        stem, dot, rest = path.name.partition(".")
+        return str(path.with_name(f"{stem}.run-{number + 1}{dot}{rest}")) if arguments.runs > 1 else file
 
     def save(generation: Generation) -> None:
         if places.transcript is not None:

@@ -256,11 +256,8 @@ def _comparison(arguments: argparse.Namespace) -> Comparison | int:
 
     names = arguments.before, arguments.after or arguments.before
     if arguments.after is None and not (arguments.params_before or arguments.params_after):
-        raise UseError(
-            "E0922",
-            f"there is nothing to compare `{names[0]}` with",
-            "name a second program, or say what differs, as in `--to width=200`",
-        )
+        hint = "name a second program, or say what differs, as in `--to width=200`"
+        raise UseError("E0922", f"there is nothing to compare `{names[0]}` with", hint)
     sources = {name: files.read(name) for name in dict.fromkeys(names)}
     versions: list[Compiled] = []
     code = 0

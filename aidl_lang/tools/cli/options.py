@@ -96,7 +96,6 @@ def add_pixels(parser: argparse.ArgumentParser) -> None:
 
 
 def add_look(parser: argparse.ArgumentParser) -> None:
-    """Adds the options for the contents of a picture."""
     about = (
         "draw these over the picture, separated by commas: names, points, bbox, constraints, dof, plan; "
         "with --sheet: names, numbers, list"
@@ -116,7 +115,6 @@ def add_outputs(parser: argparse.ArgumentParser, help: str) -> None:
 
 
 def add_drawing(parser: argparse.ArgumentParser) -> None:
-    """Adds the options for what to draw and where to write it."""
     add_outputs(
         parser,
         "where to write; the suffix tells the format; may be given several times; - is standard output "
@@ -127,7 +125,6 @@ def add_drawing(parser: argparse.ArgumentParser) -> None:
 
 
 def add_drawing_options(parser: argparse.ArgumentParser) -> None:
-    """Adds the options for how a drawing is written."""
     add = partial(value, parser)
     add("--format", "SUFFIX", "format of outputs whose name does not tell it")
     add_look(parser)

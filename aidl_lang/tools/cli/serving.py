@@ -24,7 +24,6 @@ LOCALHOST = "127.0.0.1"
 
 
 def port(text: str) -> int:
-    """Parses the port of an option."""
     if not (text.isascii() and text.isdecimal()) or int(text) > 65535:
         raise argparse.ArgumentTypeError(f"expected a port from 0 to 65535, not `{text}`")
     return int(text)

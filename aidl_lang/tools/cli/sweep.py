@@ -320,7 +320,6 @@ def _tell(session: Session, arguments: argparse.Namespace) -> None:
 
 
 def line(session: Session) -> str:
-    """Returns the result of a sweep in a line."""
     count, done = len(session.job.plan), len(session.rows)
     parts = [counted(count, "variant") if done == count else f"{done} of {counted(count, 'variant')}"]
     parts.append(f"{done - session.failed} well, {session.failed or 'none'} failing")

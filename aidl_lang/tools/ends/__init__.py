@@ -400,7 +400,6 @@ def _subject(faults: Sequence[Fault]) -> str:
 
 
 def described(sweep: Sweep) -> list[dict[str, Any]]:
-    """Returns everything that was tried, as JSON has it."""
     return [_end(each) for each in sweep.turned]
 
 

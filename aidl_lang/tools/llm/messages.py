@@ -123,7 +123,6 @@ class Image:
 
     @property
     def uri(self) -> str:
-        """The picture as a data URI."""
         return f"data:{self.media_type};base64,{self.base64}"
 
 

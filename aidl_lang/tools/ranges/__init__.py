@@ -110,7 +110,6 @@ def summary(found: Ranges) -> str:
 
 
 def described(name: str, found: Ranges) -> dict[str, Any]:
-    """Returns the results for JSON."""
     return {
         "file": name,
         "ok": found.ok,

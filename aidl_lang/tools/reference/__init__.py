@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from functools import cache
 
-from aidl_lang.checking import library
 from aidl_lang.checking.subset import Variant
 from aidl_lang.common.resources import resource
 from aidl_lang.syntax import ast
@@ -38,7 +37,6 @@ def _form(overload: Overload) -> dict[str, object]:
     node = overload.node
     if node is None or isinstance(node, ast.Let):
         return data
-    callables = library.load().callables
     data["arguments"] = [
         {
             "name": p.name.text,
@@ -50,8 +48,8 @@ def _form(overload: Overload) -> dict[str, object]:
     if isinstance(node, ast.ShapeDefinition | ast.Structure):
         data["parts"] = [{"name": part.name, "type": part.type or None} for part in parts(node)]
     if isinstance(node, ast.ConstraintDefinition):
-        data["held"] = held(node, callables).replace("`", "") or None
-        data["measures"] = exactness(node, callables)
+        data["held"] = held(node).replace("`", "") or None
+        data["measures"] = exactness(node)
     return data
 
 
@@ -124,13 +122,11 @@ def _placing(entry: Entry) -> str:
 
 
 def held_of(entry: Entry) -> list[str]:
-    callables = library.load().callables
-    return list(dict.fromkeys(filter(None, (held(node, callables) for node in entry.nodes))))
+    return list(dict.fromkeys(filter(None, map(held, entry.nodes))))
 
 
 def exactness_of(entry: Entry) -> dict[str, str]:
-    callables = library.load().callables
-    return {name: word for node in entry.nodes for name, word in exactness(node, callables).items()}
+    return {name: word for node in entry.nodes for name, word in exactness(node).items()}
 
 
 # --- The guide: the language on a few pages, a page for each variant (`docs/guide.md`, `docs/guides`).
@@ -154,5 +150,4 @@ def guide_with(topics: Sequence[str]) -> str:
 
 
 def full_guide() -> str:
-    """Returns the guide with the whole reference."""
     return guide_with([topic.name for topic in reference().topics])

@@ -43,7 +43,6 @@ class Bundle:
 
     @property
     def source(self) -> SourceFile:
-        """Returns the program as it is compiled."""
         return SourceFile(self.name, self.text)
 
 
@@ -138,7 +137,6 @@ BROKEN = {
 
 
 def fault(diagnostic: Diagnostic) -> Fault:
-    """Returns a diagnostic without its sources."""
     span = diagnostic.span
     if span is None:
         return Fault(diagnostic.code, diagnostic.message, diagnostic.label)

@@ -187,7 +187,6 @@ def _csv(cell: Cell) -> str:
 
 
 def to_json_lines(columns: Columns, rows: Sequence[Row]) -> bytes:
-    """Returns a table as JSON lines, one object a row."""
     lines = (json.dumps(columns.by_name(row), ensure_ascii=False, allow_nan=False) for row in rows)
     return "".join(f"{line}\n" for line in lines).encode("utf-8", "backslashreplace")
 

@@ -165,10 +165,8 @@ def _ranged(knob: Knob, written: str, *, is_drawn: bool) -> Axis:
         raise wrong(f"`{written}` is no range for `{knob.path}`")
     low, high = (_measure(knob, found[end]) for end in ("low", "high"))
     if low > high:
-        raise wrong(
-            f"the range `{written}` of `{knob.path}` runs backwards",
-            f"write `{found['high']}..{found['low']}`",
-        )
+        turned = f"write `{found['high']}..{found['low']}`"
+        raise wrong(f"the range `{written}` of `{knob.path}` runs backwards", turned)
     if is_drawn:
         step = _measure(knob, found["step"]) if found["step"] else knob.step
         return Axis(knob.path, (), Span(low, high, step))
@@ -176,10 +174,8 @@ def _ranged(knob: Knob, written: str, *, is_drawn: bool) -> Axis:
         return Axis(knob.path, tuple(_evenly(low, high, int(found["count"]), written)))
     step = _measure(knob, found["step"]) if found["step"] else knob.step
     if step is None:
-        raise wrong(
-            f"`{written}` does not say how many values `{knob.path}` takes",
-            f"write `{written.strip()}/8` for eight of them, or `{written.strip()} step 5`",
-        )
+        hint = f"write `{written.strip()}/8` for eight of them, or `{written.strip()} step 5`"
+        raise wrong(f"`{written}` does not say how many values `{knob.path}` takes", hint)
     return Axis(knob.path, tuple(_steps(knob, low, high, step)))
 
 
@@ -334,10 +330,8 @@ def planned(
     """Returns the plan of a sweep. Raises AidlError if there is nothing to vary, or too much."""
     if drawn is not None:
         if rows is not None:
-            raise wrong(
-                "a table says all variants, so none can be drawn at random",
-                "leave out the table, or `--random`",
-            )
+            hint = "leave out the table, or `--random`"
+            raise wrong("a table says all variants, so none can be drawn at random", hint)
         axes = [*axes, *_free(knobs, {axis.path for axis in axes})]
     plan = Plan({knob.path: knob for knob in knobs}, tuple(axes), rows, drawn)
     seen: set[str] = set()
@@ -381,10 +375,8 @@ def read_table(path: Path, knobs: Sequence[Knob], reads: Reads) -> Rows:
     except StopIteration:
         raise _wrong(f"`{path}` is empty", "its first line names the params") from None
     if len(head) == 1 and (others := [name for mark, name in _SEPARATORS.items() if mark in head[0]]):
-        raise _wrong(
-            f"the cells of `{path}` are separated by {others[0]}, not by commas",
-            "save it with commas as separators, and numbers with points: `12.5`",
-        )
+        hint = "save it with commas as separators, and numbers with points: `12.5`"
+        raise _wrong(f"the cells of `{path}` are separated by {others[0]}, not by commas", hint)
     columns = _columns(path, head, knobs)
     params = [(k, knob) for k, knob in enumerate(columns) if knob is not None]
     labels = [(k, name.strip()) for k, name in enumerate(head) if columns[k] is None]

@@ -17,7 +17,8 @@ from aidl_lang.common.processes import Engine, Guarded, count
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
 from aidl_lang.common.source import SourceFile
-from aidl_lang.common.world import World
+from aidl_lang.common.world import MemoryWorld, World
+from aidl_lang.export.job import Options, require
 from aidl_lang.pipeline import Settings
 from aidl_lang.tools.sweeping import keeping
 from aidl_lang.tools.sweeping.bundle import (
@@ -33,6 +34,7 @@ from aidl_lang.tools.sweeping.bundle import (
 from aidl_lang.tools.sweeping.keeping import Store
 from aidl_lang.tools.sweeping.outputs import TABLES, Columns, Drawings, Outputs, Row, in_order, turns, write
 from aidl_lang.tools.sweeping.outputs import outputs as sorted_outputs
+from aidl_lang.tools.sweeping.outputs import to_arrow as as_arrow
 from aidl_lang.tools.sweeping.plan import (
     Axis,
     Plan,
@@ -52,8 +54,6 @@ from aidl_lang.tools.sweeping.working import Making, variant
 if TYPE_CHECKING:
     import pyarrow
 
-    from aidl_lang.export.job import Options
-
 
 # --- How a sweep begins on the command line and in Python: the program, and the engine by name.
 
@@ -66,8 +66,6 @@ def opened(
     source: SourceFile, world: World | None, settings: pipeline.Settings
 ) -> tuple[Bundle, Gathering, tuple[Knob, ...]]:
     """Returns a program as it travels, files it may ask for, its params. Raises AidlError if wrong."""
-    from aidl_lang.common.world import MemoryWorld
-
     gathering = Gathering(world or MemoryWorld({}))
     knobs, found = pipeline.knobs(source, gathering, settings)
     if has_errors(found):
@@ -153,7 +151,6 @@ _Done = tuple[Variant, Outcome, bool]
 
 
 def _broken(broke: Broke) -> Outcome:
-    """Returns the outcome of a variant that met a limit, or a bug."""
     why = f"compiling ended in {type(broke.error).__name__}: {str(broke.error)[:200]}"
     return Outcome("broken", False, (Fault("E0603", why if broke.limit is None else BROKEN[broke.limit]),))
 
@@ -462,14 +459,10 @@ class Sweep:
 
     def to_arrow(self) -> pyarrow.Table:
         """Returns the results as a table of Arrow. Raises AidlError without the package `pyarrow`."""
-        from aidl_lang.tools.sweeping.outputs import to_arrow
-
-        return to_arrow(Columns(self._job.plan, self._job.timings), self.results)
+        return as_arrow(Columns(self._job.plan, self._job.timings), self.results)
 
     def to_pandas(self) -> Any:
         """Returns the results as a data frame of pandas. Raises AidlError without the packages."""
-        from aidl_lang.export.job import require
-
         require("pandas", "a data frame", "parquet")
         return self.to_arrow().to_pandas()
 

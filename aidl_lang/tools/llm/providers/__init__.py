@@ -115,11 +115,8 @@ def _by_environment(said: Connection, environment: Mapping[str, str]) -> str:
     if not found:
         raise ProviderError("E0930", "nothing says which language model to ask", *_WAYS)
     if len(found) > 1:
-        raise ProviderError(
-            "E0930",
-            "the environment speaks for two providers, openai and anthropic",
-            "say --provider openai or --provider anthropic, or set AIDL_PROVIDER",
-        )
+        hint = "say --provider openai or --provider anthropic, or set AIDL_PROVIDER"
+        raise ProviderError("E0930", "the environment speaks for two providers, openai and anthropic", hint)
     return found[0]
 
 
@@ -128,11 +125,8 @@ def _server(decided: Connection, environment: Mapping[str, str]) -> Connection:
     key = decided.key or environment.get(f"{prefix}_API_KEY", "").strip()
     given = decided.base_url or environment.get(f"{prefix}_BASE_URL", "").strip()
     if given and not _is_address(given):
-        raise ProviderError(
-            "E0930",
-            f"`{without_credentials(given)}` is no base URL",
-            "it starts with http:// or https://, as http://localhost:11434/v1",
-        )
+        hint = "it starts with http:// or https://, as http://localhost:11434/v1"
+        raise ProviderError("E0930", f"`{without_credentials(given)}` is no base URL", hint)
     if not key and not given:
         raise ProviderError(
             "E0932",
@@ -233,11 +227,8 @@ class Draft:
 
 
 def too_long() -> ProviderError:
-    return ProviderError(
-        "E0938",
-        f"the reply has more than {MAX_TEXT:,} characters",
-        "the model repeats itself: set --max-tokens, or take another model",
-    )
+    hint = "the model repeats itself: set --max-tokens, or take another model"
+    return ProviderError("E0938", f"the reply has more than {MAX_TEXT:,} characters", hint)
 
 
 def dig(value: object, *path: str | int) -> object:

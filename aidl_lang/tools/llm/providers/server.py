@@ -101,7 +101,6 @@ class Server(ABC):
         return f"{self.kind}:{self._model}"
 
     def close(self) -> None:
-        """Releases the connections; without it they go with the object."""
         self._client.close()
 
     def reply(self, messages: Sequence[Message], sampling: Sampling, hear: Callable[[str], None]) -> Reply:
@@ -118,11 +117,9 @@ class Server(ABC):
             else:
                 reply = draft.reply(self._connection.price)
                 return replace(reply, usage=spent + reply.usage)
-        raise ProviderError(
-            "E0938",
-            f"the reply of {self.name} broke off, however often it was asked for",
-            "look at the server, and at what stands between you and it",
-        )
+        hint = "look at the server, and at what stands between you and it"
+        why = f"the reply of {self.name} broke off, however often it was asked for"
+        raise ProviderError("E0938", why, hint)
 
     @abstractmethod
     def _send(self, messages: Sequence[Message], sampling: Sampling) -> Any:
@@ -171,11 +168,9 @@ class Server(ABC):
             raise self._silence() from None
         except sdk.APIConnectionError as error:
             why = without_credentials(one_line(str(error.__cause__)))
-            raise ProviderError(
-                "E0936",
-                f"there is no connection to {self._connection.address}: {why}",
-                "is the server running, and is the base URL right?",
-            ) from None
+            message = f"there is no connection to {self._connection.address}: {why}"
+            hint = "is the server running, and is the base URL right?"
+            raise ProviderError("E0936", message, hint) from None
         except sdk.APIError as error:  # told in the middle of a stream
             raise self._out_of_order(self._words(error.body) or self._words(error.message)) from None
         except UnicodeEncodeError:
@@ -190,11 +185,8 @@ class Server(ABC):
                 "E0932", f"the key was refused{because}", f"look at {self.kind.upper()}_API_KEY"
             )
         if status in (402, 429):
-            return ProviderError(
-                "E0933",
-                f"the limit on requests is reached{because}",
-                "wait, or raise the limit at the provider",
-            )
+            hint = "wait, or raise the limit at the provider"
+            return ProviderError("E0933", f"the limit on requests is reached{because}", hint)
         if status == 404:
             return ProviderError("E0934", f"there is no model `{self._model}`{because}", *self._models_hint())
         if status < 400 or status >= 500:
