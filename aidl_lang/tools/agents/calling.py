@@ -83,12 +83,7 @@ class Tool:
     def arguments(self, *, strict: bool = False) -> Json:
         properties = {p.name: _property(p, strict) for p in self.parameters}
         required = [p.name for p in self.parameters if strict or p.is_required]
-        return {
-            "type": "object",
-            "properties": properties,
-            "required": required,
-            "additionalProperties": False,
-        }
+        return _closed(properties, required)
 
 
 def tools() -> tuple[Tool, ...]:
@@ -152,13 +147,13 @@ def _object(kind: type, made: dict[str, Json]) -> Json:
     """Returns the schema of a dataclass of a result; those in it are put into `made`, by their names."""
     hints = get_type_hints(kind)
     names = [field.name for field in shown_fields(kind)]
-    return {
-        "type": "object",
-        "description": " ".join((kind.__doc__ or "").split()),
-        "properties": {name: _given(hints[name], made) for name in names},
-        "required": names,
-        "additionalProperties": False,
-    }
+    properties = {name: _given(hints[name], made) for name in names}
+    return _closed(properties, names, description=" ".join((kind.__doc__ or "").split()))
+
+
+def _closed(properties: Json, required: list[str], **more: str) -> Json:
+    whole = {"properties": properties, "required": required, "additionalProperties": False}
+    return {"type": "object", **more, **whole}
 
 
 def _given(kind: Any, made: dict[str, Json]) -> Json:
@@ -198,12 +193,7 @@ def _strict(kind: Any) -> Json:
     if get_origin(kind) is not Mapping:
         return _schema(kind, _strict)
     value = _strict(get_args(kind)[1])
-    pair = {
-        "type": "object",
-        "properties": {"name": {"type": "string"}, "value": value},
-        "required": ["name", "value"],
-        "additionalProperties": False,
-    }
+    pair = _closed({"name": {"type": "string"}, "value": value}, ["name", "value"])
     return {"type": "array", "items": pair}
 
 

@@ -266,13 +266,10 @@ def run_watch(arguments: argparse.Namespace) -> int:
     """Runs until interrupted."""
     from watchfiles import watch
 
-    if arguments.file == files.STANDARD:
-        raise UseError("E0902", "standard input cannot be watched", "name a file")
-    files.read(arguments.file)
     from aidl_lang.solver.hierarchy import Memory
 
+    files.require_watchable(arguments.file)
     targets(arguments)
-
     program, memory = Path(arguments.file).resolve(), Memory()
     read = _once(arguments, memory)
     for changes in watch(program.parent, watch_filter=lambda _, path: may_be_read(path)):

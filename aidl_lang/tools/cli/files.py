@@ -88,6 +88,13 @@ def read(name: str) -> SourceFile:
     return SourceFile(name, decoded(data, f"`{name}`"))
 
 
+def require_watchable(name: str) -> None:
+    """Refuses standard input, and a program that cannot be read."""
+    if name == STANDARD:
+        raise UseError("E0902", "standard input cannot be watched", "name a file")
+    read(name)
+
+
 def world(name: str) -> DiskWorld:
     """Returns the world whose imports are read beside the program."""
     from aidl_lang.common.world import DiskWorld

@@ -190,21 +190,11 @@ def add_provider(parser: argparse.ArgumentParser) -> None:
 
 def provider(arguments: argparse.Namespace) -> Closable:
     """Returns the model that the options of `add_provider` name. Raises AidlError."""
-    from aidl_lang.tools.llm.providers import Connection, connect
+    from aidl_lang.tools.llm.providers import Connection, Constrained, connect
 
-    said = Connection(
-        provider=arguments.provider,
-        model=arguments.model,
-        base_url=arguments.base_url,
-        timeout=arguments.timeout,
-        price=arguments.price,
-    )
-    connected = connect(said)
-    if not arguments.constrain:
-        return connected
-    from aidl_lang.tools.llm.providers import Constrained
-
-    return Constrained(connected, arguments.constrain)
+    names = ("provider", "model", "base_url", "timeout", "price")
+    connected = connect(Connection(**{name: getattr(arguments, name) for name in names}))
+    return Constrained(connected, arguments.constrain) if arguments.constrain else connected
 
 
 def sampling(arguments: argparse.Namespace) -> Sampling:

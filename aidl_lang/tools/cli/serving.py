@@ -95,9 +95,7 @@ def register_preview(parser: argparse.ArgumentParser) -> None:
 def run_preview(arguments: argparse.Namespace) -> int:
     """Runs until interrupted."""
     require("the preview", "pygls", "starlette", "uvicorn", "websockets")
-    if arguments.file == files.STANDARD:
-        raise UseError("E0902", "standard input cannot be watched", "name a file")
-    files.read(arguments.file)
+    files.require_watchable(arguments.file)
     hint = "without `--port` a free one is taken"
     listener = listen(arguments.host, arguments.port, "E0953", hint)
 

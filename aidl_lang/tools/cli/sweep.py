@@ -283,12 +283,10 @@ def _job(arguments: argparse.Namespace, source: Any) -> Job:
 
 
 def _plan(arguments: argparse.Namespace, knobs: Any) -> Plan:
-    from aidl_lang.tools.sweeping.plan import axis, planned
+    from aidl_lang.tools.sweeping.plan import axis, planned, read_table
 
     rows: Rows | None = None
     if arguments.table:
-        from aidl_lang.tools.sweeping.plan import read_table
-
         rows = read_table(Path(arguments.table), knobs, files.reads)
         if rows.labels:
             say(f"{arguments.table}: carried along, as no param is called so: {named(rows.labels)}")
@@ -330,13 +328,12 @@ def line(session: Session) -> str:
 
 def _list(failures: Sequence[Row], turns: Sequence[str], outputs: Sequence[str]) -> None:
     from aidl_lang.common.render import escape
+    from aidl_lang.tools.sweeping.outputs import said
     from aidl_lang.tools.sweeping.plan import labels
 
     for row in failures[:_MOST_TOLD]:
         say(f"failing: {row.variant.number}: {escape(_short(labels(row.variant.values)))}")
         for fault in row.outcome.errors[:3]:
-            from aidl_lang.tools.sweeping.outputs import said
-
             say(f"  {escape(said(fault))}")
         if not row.outcome.errors:
             say(f"  {escape(row.message)}")

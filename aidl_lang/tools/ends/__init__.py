@@ -420,6 +420,3 @@ def _end(turned: Turned) -> dict[str, Any]:
 
 def _faults(tried: Tried) -> list[dict[str, Any]]:
     return [asdict(fault) for fault in tried.faults]
-
-
-__all__ = ["Sweep", "SweepJob", "Turned", "described", "has_range", "sentence", "sweep"]
