@@ -399,17 +399,15 @@ class Drawings:
         """Names the drawings of all variants, numbering equal names. Raises AidlError if one was read."""
         self.renamed = 0
         self._patterns = outputs.patterns
-        self._names = [list(self._named(each, plan)) for each in outputs.patterns]
+        self._names: list[list[str]] = []
         self._written: dict[str, int] = {}
         self._reads = reads
-        for names in self._names:
+        for each in outputs.patterns:
+            plain = [each.named(variant) for variant in plan]
+            names = list(distinct(plain))
+            self.renamed += sum(name != before for name, before in zip(names, plain, strict=True))
             reads.require_unread(names)
-
-    def _named(self, each: Pattern, plan: Plan) -> Iterator[str]:
-        plain = [each.named(variant) for variant in plan]
-        for before, name in zip(plain, distinct(plain), strict=True):
-            self.renamed += name != before
-            yield name
+            self._names.append(names)
 
     def names(self, variant: Variant) -> list[str]:
         """Returns the names of a variant's drawings, one for each pattern."""
