@@ -199,7 +199,7 @@ def generate(
     attempts: list[Attempt] = []
     failure, number = None, 0
     try:
-        while True:
+        while not attempts or attempts[-1].answer:
             step = len(attempts) + 1
             reply = provider.reply(messages, settings.sampling, partial(hear, step))
             messages.append(Message("assistant", reply.text.strip() or "(nothing)"))
@@ -218,8 +218,6 @@ def generate(
                 messages.append(Message("user", answer, verdict.images if verdict else ()))
             attempts.append(Attempt(step, reply, program, verdict, answer))
             listen(Generation(task, tuple(attempts), verdict, tuple(messages)))
-            if not answer:
-                break
     except ProviderError as reason:
         failure = reason.diagnostic
     except ConversationOver:
