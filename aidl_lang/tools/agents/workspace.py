@@ -93,11 +93,9 @@ class Workspace:
         try:
             given = MemoryWorld(files)
         except FileError as error:
-            raise refusal(
-                "E0944",
-                f"the file name `{error.path[:200]}` cannot be used: {error.reason}",
-                "name files as the program imports them, as `parts/bolt.aidl`",
-            ) from None
+            message = f"the file name `{error.path[:200]}` cannot be used: {error.reason}"
+            hint = "name files as the program imports them, as `parts/bolt.aidl`"
+            raise refusal("E0944", message, hint) from None
         disk = None if self.root is None else Programs(DiskWorld(self.root))
         return SourceFile(PROGRAM, program.removeprefix("\ufeff")), Surroundings(given, disk)
 

@@ -201,12 +201,8 @@ def _topics(written: str) -> list[str]:
     topics = [topic.strip() for topic in written.split(",")]
     for topic in topics:
         if topic not in known:
-            raise UseError(
-                "E0912",
-                f"the reference has no topic `{topic}`",
-                *did_you_mean(nearest(topic, known, 2)),
-                f"topics: {', '.join(known)}",
-            )
+            hints = (*did_you_mean(nearest(topic, known, 2)), f"topics: {', '.join(known)}")
+            raise UseError("E0912", f"the reference has no topic `{topic}`", *hints)
     return topics
 
 

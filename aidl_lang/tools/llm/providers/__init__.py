@@ -128,12 +128,8 @@ def _server(decided: Connection, environment: Mapping[str, str]) -> Connection:
         hint = "it starts with http:// or https://, as http://localhost:11434/v1"
         raise ProviderError("E0930", f"`{without_credentials(given)}` is no base URL", hint)
     if not key and not given:
-        raise ProviderError(
-            "E0932",
-            f"there is no key for {decided.provider}",
-            f"set {prefix}_API_KEY",
-            "a server of your own needs no key: name it with --base-url",
-        )
+        ways = f"set {prefix}_API_KEY", "a server of your own needs no key: name it with --base-url"
+        raise ProviderError("E0932", f"there is no key for {decided.provider}", *ways)
     if not key.isascii() or not key.isprintable():
         raise ProviderError(
             "E0932", f"{prefix}_API_KEY holds characters that no key has", "copy the key again"
@@ -322,11 +318,9 @@ class Command:
                 env={name: value for name, value in os.environ.items() if not name.startswith(_OTHERS)},
             )
         except (OSError, ValueError) as error:
-            raise ProviderError(
-                "E0936",
-                f"`{self._command[0]}` cannot be run: {getattr(error, 'strerror', None) or error}",
-                "is the path right, and may it be executed? A script may want `python` or `sh` before it",
-            ) from None
+            why = f"`{self._command[0]}` cannot be run: {getattr(error, 'strerror', None) or error}"
+            hint = "is the path right, and may it be executed? A script may want `python` or `sh` before it"
+            raise ProviderError("E0936", why, hint) from None
         with process:
             try:
                 yield process
@@ -404,12 +398,8 @@ class Command:
         return ProviderError("E0938", f"the reply of `{self.name}` cannot be used: {why}", *_last(said))
 
     def _silence(self, said: bytes) -> ProviderError:
-        return ProviderError(
-            "E0937",
-            f"`{self.name}` was silent for {self._connection.timeout:g} seconds and was stopped",
-            "--timeout SECONDS gives it longer",
-            *_last(said),
-        )
+        why = f"`{self.name}` was silent for {self._connection.timeout:g} seconds and was stopped"
+        return ProviderError("E0937", why, "--timeout SECONDS gives it longer", *_last(said))
 
 
 def _document(messages: Sequence[Message], sampling: Sampling, model: str) -> dict[str, object]:

@@ -226,11 +226,9 @@ class Server(ABC):
         raise ProviderError("E0930", "no model is named", "say --model NAME, or set AIDL_MODEL", *shown)
 
     def _silence(self) -> ProviderError:
-        return ProviderError(
-            "E0937",
-            f"{self._connection.address} was silent for {self._connection.timeout:g} seconds",
-            "--timeout SECONDS gives it longer; a model in main memory may need minutes to read the guide",
-        )
+        why = f"{self._connection.address} was silent for {self._connection.timeout:g} seconds"
+        hint = "--timeout SECONDS gives it longer; a model in main memory may need minutes to read the guide"
+        return ProviderError("E0937", why, hint)
 
     def _out_of_order(self, said: str) -> ProviderError:
         because = f": {said}" if said else ", and does not say why"
