@@ -21,8 +21,8 @@ from aidl_lang.common.source import SourceFile
 from aidl_lang.parser import parse
 from aidl_lang.syntax import ast
 from aidl_lang.syntax.tables import KINDS, load_tables
+from aidl_lang.tools.reference import full_guide, guide
 from aidl_lang.tools.reference.collect import Entry, reference
-from aidl_lang.tools.reference.pages import full_guide, guide
 from aidl_lang.tools.reference.signatures import split_items
 from tests.documents import ROOT
 

@@ -24,8 +24,8 @@ from aidl_lang.common.world import DiskWorld, MemoryWorld
 from aidl_lang.pipeline import Compiled
 from aidl_lang.solver import Stages
 from aidl_lang.tools.cli import main
+from aidl_lang.tools.reference import guide
 from aidl_lang.tools.reference.collect import reference
-from aidl_lang.tools.reference.pages import guide
 from tests.amount import tries
 from tests.documents import ROOT, Block, blocks
 from tests.property.programs import Part, Sketch, part, sketches

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from functools import cache
 
@@ -48,64 +48,57 @@ def mend(
     return to an earlier text. Where all fixes together make it worse, parts of them are tried. No look after
     the first is begun once half the time is over that building a program may take.
     """
-    return _Mender(world, settings).mended(source)
+    last = time.thread_time() + _SHARE * settings.building.seconds
+
+    def looked_at(changed: SourceFile, fixes: tuple[str, ...]) -> Mended:
+        left = last - time.thread_time()
+        if left < _LEAST_SECONDS:
+            raise _OutOfTimeError
+        hurried = replace(settings, building=replace(settings.building, seconds=left))
+        return Mended(changed, pipeline.check(changed, world, hurried), fixes)
+
+    now = Mended(source, pipeline.check(source, world, settings))
+    seen: dict[object, Mended] = {_outlook(now): now}
+    try:
+        for _ in range(_STEPS):
+            tried = (_after(now, part, looked_at) for part in _parts(_sure(now)))
+            better = next((after for after in tried if after is not None), None)
+            if better is None:
+                break
+            if (before := seen.setdefault(_outlook(better), better)) is not better:
+                return before  # what was done since undoes itself
+            now = better
+    except _OutOfTimeError:
+        pass
+    return now
 
 
 class _OutOfTimeError(Exception):
     """Raised if there is no time to check the program again."""
 
 
-class _Mender:
-    def __init__(self, world: World | None, settings: pipeline.Settings) -> None:
-        self.world = world
-        self.settings = settings
-        self.last = 0.0
+def _sure(state: Mended) -> list[Diagnostic]:
+    return [d for d in state.diagnostics if d.fix is not None and d.fix.is_sure]
 
-    def mended(self, source: SourceFile) -> Mended:
-        self.last = time.thread_time() + _SHARE * self.settings.building.seconds
-        now = Mended(source, pipeline.check(source, self.world, self.settings))
-        seen: dict[object, Mended] = {_outlook(now): now}
-        try:
-            for _ in range(_STEPS):
-                better = self._better(now)
-                if better is None:
-                    break
-                if (before := seen.setdefault(_outlook(better), better)) is not better:
-                    return before  # what was done since undoes itself
-                now = better
-        except _OutOfTimeError:
-            pass
-        return now
 
-    def _better(self, now: Mended) -> Mended | None:
-        for part in _parts([d for d in now.diagnostics if d.fix is not None and d.fix.is_sure]):
-            if (after := self._after(now, part)) is not None:
-                return after
-        return None
-
-    def _after(self, now: Mended, part: Sequence[Diagnostic]) -> Mended | None:
-        """Returns the program after some fixes and those that they bring to light; None if it is worse."""
-        stated, errors, after = constraining(now.source), _errors(now.diagnostics), now
-        for _ in range(_AHEAD):
-            text, applied = apply_fixes(after.source, part)
-            if not applied or text == after.source.text:
-                return None
-            titles = tuple(d.fix.title for d in part if d.fix)[:applied]
-            after = self._looked_at(SourceFile(now.source.name, text), (*after.fixes, *titles))
-            is_cut_off = any(d.code.startswith(_CUT_OFF) for d in after.diagnostics)
-            if is_cut_off or constraining(after.source) < stated:
-                return None
-            if _errors(after.diagnostics) <= errors:
-                return after
-            part = [d for d in after.diagnostics if d.fix is not None and d.fix.is_sure]
-        return None
-
-    def _looked_at(self, source: SourceFile, fixes: tuple[str, ...]) -> Mended:
-        left = self.last - time.thread_time()
-        if left < _LEAST_SECONDS:
-            raise _OutOfTimeError
-        hurried = replace(self.settings, building=replace(self.settings.building, seconds=left))
-        return Mended(source, pipeline.check(source, self.world, hurried), fixes)
+def _after(
+    now: Mended, part: Sequence[Diagnostic], looked_at: Callable[[SourceFile, tuple[str, ...]], Mended]
+) -> Mended | None:
+    """Returns the program after some fixes and those that they bring to light; None if it is worse."""
+    stated, errors, after = constraining(now.source), _errors(now.diagnostics), now
+    for _ in range(_AHEAD):
+        text, applied = apply_fixes(after.source, part)
+        if not applied or text == after.source.text:
+            return None
+        titles = tuple(d.fix.title for d in part if d.fix)[:applied]
+        after = looked_at(SourceFile(now.source.name, text), (*after.fixes, *titles))
+        is_cut_off = any(d.code.startswith(_CUT_OFF) for d in after.diagnostics)
+        if is_cut_off or constraining(after.source) < stated:
+            return None
+        if _errors(after.diagnostics) <= errors:
+            return after
+        part = _sure(after)
+    return None
 
 
 def _parts(found: Sequence[Diagnostic]) -> Iterator[Sequence[Diagnostic]]:

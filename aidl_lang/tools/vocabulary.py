@@ -53,51 +53,20 @@ _SORTS |= {"constraint": "constraints", "relation": "relations"}
 class Vocabulary:
     """The words by class. No keyword and no sign is in two classes, nor is a name of the library; a name may
     well be a kind, a parameter's type and a bare word besides.
-
-    Keywords:
-    declarations    begin a statement that gives a name: `param`, `fn`
-    demands         begin one that asks for something: `constrain`, `assert`
-    modifiers       stand before a definition: `construction`
-    control, imports, word_operators, truths
-    clauses         stand inside a statement: `at`, `step`
-    statements      the words of the classes above that may begin a statement
-    reserved        those that are never names
-
-    Signs: comparisons, arithmetic, logic, ranges, assignments, brackets, punctuation, attribute_signs.
-
-    Fixed words that are no keywords:
-    kinds           the four kinds of structure
-    kind_words      what may stand for them, themselves included
-    attributes      what may stand behind `@`
-    units           what may touch a number
-    types           what may stand behind `:` in a parameter, beside the names of shapes
-    everywhere      names that every structure has: `origin`
-    modules         namespaces of other languages: `math`
-    bare_words      words that may stand as an argument: `axis: x`
-
-    Names that are called; what the library adds to a name that is built in goes with it:
-    primitives      `circle`
-    operations      `offset`, `move`, `grid`
-    exactness       `fixed`
-    built_in        the other built-in functions: `sin`, `len`
-    shapes, templates, constraints, functions
-    relations       constraints on boxes: `above`
-
-    constants       of the library: `pi`
-    synonyms        (other word, name in one of the classes above)
-    helpers         names for the library's own use, its synonyms for them among these
     """
 
-    declarations: tuple[str, ...]
-    demands: tuple[str, ...]
-    modifiers: tuple[str, ...]
+    # Keywords
+    declarations: tuple[str, ...]  # begin a statement that gives a name: `param`, `fn`
+    demands: tuple[str, ...]  # begin one that asks for something: `constrain`, `assert`
+    modifiers: tuple[str, ...]  # stand before a definition: `construction`
     control: tuple[str, ...]
     imports: tuple[str, ...]
-    clauses: tuple[str, ...]
+    clauses: tuple[str, ...]  # stand inside a statement: `at`, `step`
     word_operators: tuple[str, ...]
     truths: tuple[str, ...]
-    reserved: tuple[str, ...]
-    statements: tuple[str, ...]
+    reserved: tuple[str, ...]  # those that are never names
+    statements: tuple[str, ...]  # the words of the classes above that may begin a statement
+    # Signs
     comparisons: tuple[str, ...]
     arithmetic: tuple[str, ...]
     logic: tuple[str, ...]
@@ -106,26 +75,28 @@ class Vocabulary:
     brackets: tuple[str, ...]
     punctuation: tuple[str, ...]
     attribute_signs: tuple[str, ...]
-    kinds: tuple[str, ...]
-    kind_words: tuple[str, ...]
-    attributes: tuple[str, ...]
-    units: tuple[str, ...]
-    types: tuple[str, ...]
-    everywhere: tuple[str, ...]
-    modules: tuple[str, ...]
-    bare_words: tuple[str, ...]
-    primitives: tuple[str, ...]
-    operations: tuple[str, ...]
-    exactness: tuple[str, ...]
-    built_in: tuple[str, ...]
+    # Fixed words that are no keywords
+    kinds: tuple[str, ...]  # the four kinds of structure
+    kind_words: tuple[str, ...]  # what may stand for them, themselves included
+    attributes: tuple[str, ...]  # what may stand behind `@`
+    units: tuple[str, ...]  # what may touch a number
+    types: tuple[str, ...]  # what may stand behind `:` in a parameter, beside the names of shapes
+    everywhere: tuple[str, ...]  # names that every structure has: `origin`
+    modules: tuple[str, ...]  # namespaces of other languages: `math`
+    bare_words: tuple[str, ...]  # words that may stand as an argument: `axis: x`
+    # Names that are called; what the library adds to a name that is built in goes with it
+    primitives: tuple[str, ...]  # `circle`
+    operations: tuple[str, ...]  # `offset`, `move`, `grid`
+    exactness: tuple[str, ...]  # `fixed`
+    built_in: tuple[str, ...]  # the other built-in functions: `sin`, `len`
     shapes: tuple[str, ...]
     templates: tuple[str, ...]
     constraints: tuple[str, ...]
-    relations: tuple[str, ...]
+    relations: tuple[str, ...]  # constraints on boxes: `above`
     functions: tuple[str, ...]
-    constants: tuple[str, ...]
-    synonyms: tuple[tuple[str, str], ...]
-    helpers: tuple[str, ...]
+    constants: tuple[str, ...]  # of the library: `pi`
+    synonyms: tuple[tuple[str, str], ...]  # (other word, name in one of the classes above)
+    helpers: tuple[str, ...]  # names for the library's own use, its synonyms for them among these
 
     @property
     def keywords(self) -> tuple[str, ...]:
@@ -155,7 +126,6 @@ NAMES = (
 
 @cache
 def vocabulary() -> Vocabulary:
-    """Returns the words of this installation."""
     tables = load_tables()
     words = tables.reserved | tables.soft_words
     states = tables.parsing.states

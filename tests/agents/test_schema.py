@@ -12,8 +12,7 @@ from typing import Any
 import jsonschema
 import pytest
 
-from aidl_lang.tools.agents.calling import answer
-from aidl_lang.tools.agents.schema import for_anthropic, for_mcp, for_openai
+from aidl_lang.tools.agents.calling import answer, for_anthropic, for_mcp, for_openai
 from aidl_lang.tools.agents.tools import Tools
 from aidl_lang.tools.cli import main
 from tests.agents.test_tools import CONFLICT, PLATE, TELEPHONE

@@ -28,7 +28,7 @@ class Broken(Tools):
                 os._exit(3)
             case "devour":
                 bytearray(2 * MEMORY)
-        return Page(name, name)
+        return Page(name, name, text=name)
 
 
 @pytest.fixture

@@ -16,7 +16,7 @@ from PIL import Image
 from aidl_lang import pipeline
 from aidl_lang.common.source import SourceFile
 from aidl_lang.tools.cli import main
-from aidl_lang.tools.reference.pages import guide
+from aidl_lang.tools.reference import guide
 from tests.llm.scripted import Says, Scripted
 
 PLATE = """solid plate {

@@ -45,10 +45,18 @@ Json = dict[str, Any]
 
 
 def restricted(document: Json, path: str) -> Json:
-    """Returns the document with the structure at a path as its root, and only its data. Raises KeyError."""
-    root = next((s for s in _walk(document["root"]) if s["path"] == path), None)
+    """Returns the document with the structure at a path, with or without the name of the root, as its root,
+    and only its data. Raises RefusalError.
+    """
+    whole = document["root"]["path"]
+    known = {s["path"]: s for s in _walk(document["root"])}
+    root = known.get(path) or known.get(f"{whole}.{path}")
     if root is None:
-        raise KeyError(path)
+        short_names = {name.removeprefix(f"{whole}."): name for name in known}
+        near = did_you_mean(short_names[name] for name in nearest(path, short_names))
+        message = f"there is no structure `{path[:200]}` in the model"
+        raise refusal("E0919", message, *near, f"there is {some_of(list(known))}")
+    path = root["path"]
 
     def is_inside(other: str) -> bool:
         return other == path or other.startswith(f"{path}.")
@@ -65,11 +73,6 @@ def restricted(document: Json, path: str) -> Json:
         "regions": {name: region for name, region in document["regions"].items() if is_inside(name)},
         "pairs": [p for p in document["pairs"] if is_inside(p["a"]) or is_inside(p["b"])],
     }
-
-
-def paths(document: Json) -> list[str]:
-    """Returns the paths of all structures, in order of writing."""
-    return [s["path"] for s in _walk(document["root"])]
 
 
 def shortened(document: Json, most: int) -> tuple[Json, str | None]:
@@ -237,12 +240,17 @@ def drawn(
     dimensioned: bool,
 ) -> Drawn:
     """Returns a program's result in some formats, for its reader. Raises RefusalError: an unknown `path`."""
-    making = _Making(compiled, limits, dimensioned)
-    model, shortened = making.model(path) if "model" in formats else (None, None)
+    from aidl_lang.export.json import to_dict
+
+    making, drawing = _Making(compiled, limits, dimensioned), compiled.drawing
+    model = remark = None
+    if "model" in formats and compiled.model is not None and drawing is not None:
+        whole = to_dict(compiled.model, drawing, compiled.diagnostics)
+        model, remark = shortened(whole if path is None else restricted(whole, path), limits.text)
     files = [f for f in dict.fromkeys(formats) if f not in ("png", "model")]
     exports = [export for f in files if (export := making.export(f)) is not None]
-    png = making.png() if "png" in formats else None
-    drawing, bodies = compiled.drawing, _bodies(compiled)
+    png = making.made("png") if "png" in formats and drawing is not None else None
+    bodies = _bodies(compiled)
     pairs = drawing.pairs if drawing else ()
     contacts = list(pairs[:MOST_LISTED])
     counts = {
@@ -256,17 +264,20 @@ def drawn(
         compiled.ok,
         status(compiled),
         findings(diagnostics),
-        [_knob(k) for k in compiled.knobs[:MOST_LISTED]],
+        [
+            Knob(k.path, k.value, k.low, k.high, list(k.choices), k.step, k.unit, k.doc)
+            for k in compiled.knobs[:MOST_LISTED]
+        ],
         compiled.model.degrees if compiled.model else None,
         motions(compiled),
         bodies,
         contacts,
         model,
-        shortened,
+        remark,
         exports,
         left,
-        png,
-        report=joined(
+        pictures=() if png is None else (png,),
+        text=joined(
             [
                 _headline(compiled, png is not None),
                 compact(diagnostics),
@@ -275,7 +286,7 @@ def drawn(
                 "\n".join(map(contact, contacts)),
                 "\n".join(left),
                 "" if model is None else text(model),
-                shortened or "",
+                remark or "",
                 *map(_file, exports),
             ]
         ),
@@ -290,34 +301,9 @@ class _Making:
         self.notes: list[Diagnostic] = []
         self.room = limits.text
 
-    def model(self, path: str | None) -> tuple[Json | None, str | None]:
-        from aidl_lang.export.json import to_dict
-
-        compiled = self.compiled
-        if compiled.model is None or compiled.drawing is None:
-            return None, None
-        document = to_dict(compiled.model, compiled.drawing, compiled.diagnostics)
-        if path is not None:
-            document = self._restricted(document, path)
-        return shortened(document, self.limits.text)
-
-    def _restricted(self, document: Json, path: str) -> Json:
-        root, known = document["root"]["path"], paths(document)
-        for wanted in (path, f"{root}.{path}"):
-            if wanted in known:
-                return restricted(document, wanted)
-        short_names = {name.removeprefix(f"{root}."): name for name in known}
-        near = [hint for name in nearest(path, short_names) for hint in did_you_mean([short_names[name]])]
-        message = f"there is no structure `{path[:200]}` in the model"
-        raise refusal("E0919", message, *near, f"there is {some_of(known)}")
-
-    def png(self) -> bytes | None:
-        """Returns the picture; of a program that did not solve, its last state."""
-        return self._made("png") if self.compiled.drawing is not None else None
-
     def export(self, name: str) -> Export | None:
         """Returns a file of a program that is right."""
-        content = self._made(name) if self.compiled.ok else None
+        content = self.made(name) if self.compiled.ok else None
         if content is None:
             return None
         is_text = name in _TEXTS
@@ -331,7 +317,8 @@ class _Making:
         self.room -= len(text)
         return Export(name, "text" if is_text else "base64", text)
 
-    def _made(self, name: str) -> bytes | None:
+    def made(self, name: str) -> bytes | None:
+        """Returns a file, of a program that did not solve with its last state; None if it cannot be made."""
         from aidl_lang.export.job import ExportError, Options
 
         options = Options(dimension=self.dimensioned, pixels=self.limits.pixels)
@@ -373,12 +360,6 @@ def motions(compiled: Compiled) -> list[str]:
     from aidl_lang.geometry.freedom import report
 
     return [] if compiled.model is None else report(compiled.model, MOST_LISTED)
-
-
-def _knob(knob: pipeline.Knob) -> Knob:
-    return Knob(
-        knob.path, knob.value, knob.low, knob.high, list(knob.choices), knob.step, knob.unit, knob.doc
-    )
 
 
 def _bodies(compiled: Compiled) -> list[Body]:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import dataclasses
 import re
-from abc import ABC, abstractmethod
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import field
 from typing import Any, Literal, TypeAlias
@@ -15,8 +14,8 @@ from aidl_lang.common.prose import rounded
 from aidl_lang.common.records import record
 from aidl_lang.common.source import Span
 from aidl_lang.geometry.boolean import Contact
+from aidl_lang.tools.reference import forms
 from aidl_lang.tools.reference.collect import Entry, search
-from aidl_lang.tools.reference.pages import forms
 
 MOST_FINDINGS = 50
 Status: TypeAlias = Literal["solved", "partial", "failed", "wrong"]
@@ -82,29 +81,12 @@ class Findings:
     left_out: int = 0
 
 
-class Result(ABC):
-    """What every result has in common: a dataclass that is read as `text`, or as `data` with its pictures."""
-
-    @property
-    def pictures(self) -> tuple[bytes, ...]:
-        """PNG files that belong to it."""
-        return ()
-
-    @property
-    @abstractmethod
-    def text(self) -> str:
-        """The whole for a reader."""
-
-
 @record(kw_only=True)
-class Reported(Result):
-    """A result whose text was written as it was made."""
+class Result:
+    """What every result has in common: beside its data the whole for a reader, and pictures (PNG)."""
 
-    report: str = field(repr=False)
-
-    @property
-    def text(self) -> str:
-        return self.report
+    text: str = field(repr=False)
+    pictures: tuple[bytes, ...] = field(default=(), repr=False)
 
 
 def data(result: object) -> Any:
@@ -167,7 +149,7 @@ def joined(blocks: Iterable[str]) -> str:
 
 
 @record()
-class Checked(Reported):
+class Checked(Result):
     """What can be said of a program without solving it. `fixed_program` is the program with all fixes
     applied, whose titles are in `fixes`; null where there were none. `findings_after_fixes` is what is left
     in it.
@@ -216,7 +198,7 @@ class Export:
 
 
 @record()
-class Drawn(Reported):
+class Drawn(Result):
     """What came of a program. `status` is `solved`, `partial`, `failed`, or `wrong` for a program that could
     not be built. `motions` says what can still move. `model` is the solved model as JSON where it was asked
     for; `shortened` says what was left out of it. The picture comes beside this.
@@ -234,15 +216,10 @@ class Drawn(Reported):
     shortened: str | None
     exports: list[Export]
     left_out: list[str]
-    png: bytes | None = field(repr=False)
-
-    @property
-    def pictures(self) -> tuple[bytes, ...]:
-        return () if self.png is None else (self.png,)
 
 
 @record()
-class Measured(Reported):
+class Measured(Result):
     """Areas, walls, gaps and masses, as `aidl measure --json` tells them: mm, mm², mm³, g, mm⁴."""
 
     whole: dict[str, Any]
@@ -254,7 +231,7 @@ class Measured(Reported):
 
 
 @record()
-class Edited(Reported):
+class Edited(Result):
     """A program whose `param` has another default, and what that changes in the drawing, as sentences
     (`changes`).
     """
@@ -305,7 +282,7 @@ class Conflict:
 
 
 @record()
-class Conflicts(Reported):
+class Conflicts(Result):
     """Why a program does not solve, or for one that does, what is redundant in it (`findings`) and what can
     move.
     """
@@ -325,10 +302,6 @@ class Page(Result):
     content: str
     sections: list[str] = field(default_factory=list)
 
-    @property
-    def text(self) -> str:
-        return self.content
-
 
 @record()
 class Hit:
@@ -347,12 +320,8 @@ class Hits(Result):
 
     hits: list[Hit]
 
-    @property
-    def text(self) -> str:
-        return joined(map(_told, self.hits)) or "nothing fits; try other words, or read the guide"
 
-
-def _told(hit: Hit) -> str:
+def told(hit: Hit) -> str:
     lines = [f"{hit.name} ({hit.kind}): {hit.summary}", *(f"  {form}" for form in hit.forms)]
     return "\n".join([*lines, *(f"    {line}" for line in hit.example.splitlines())])
 

@@ -16,8 +16,7 @@ from mcp_types import Tool as McpTool
 
 from aidl_lang.common import resources
 from aidl_lang.common.resources import resource
-from aidl_lang.tools.agents.calling import Workers
-from aidl_lang.tools.agents.schema import for_mcp
+from aidl_lang.tools.agents.calling import Workers, for_mcp
 from aidl_lang.tools.agents.tools import Tools
 from aidl_lang.tools.agents.workspace import RefusalError, Workspace
 from aidl_lang.version import __version__

@@ -99,7 +99,7 @@ class Tools:
             list(mended.fixes),
             mended.source.text if mended.fixes else None,
             findings(left_over) if mended.fixes else None,
-            report=joined(blocks),
+            text=joined(blocks),
         )
 
     def compile(
@@ -129,19 +129,19 @@ class Tools:
         ] = "full",
     ) -> Page:
         """The AIDL language on a few pages. Read it before you write the first program."""
-        from aidl_lang.tools.reference.pages import guide
+        from aidl_lang.tools.reference import guide
 
         whole = guide(Variant(variant))
         head, *parts = whole.split("\n## ")
         sections = {part.partition("\n")[0].strip(): f"## {part}" for part in parts}
         title = head.partition("\n")[0].lstrip("# ")
         if section is None:
-            return Page(title, whole, list(sections))
+            return Page(title, whole, list(sections), text=whole)
         named = next((name for name in sections if name.casefold() == section.strip().casefold()), None)
         if named is None:
             listed = ", ".join(ticked(sections))
             raise refusal("E0944", f"the guide has no section `{section[:100]}`", f"sections: {listed}")
-        return Page(named, sections[named], list(sections))
+        return Page(named, sections[named], list(sections), text=sections[named])
 
     def search(
         self,
@@ -151,7 +151,9 @@ class Tools:
         """Find names of the AIDL library (shapes, constraints, functions, words of the language) and codes of
         diagnostics by what they are about, each with its forms and an example.
         """
-        return Hits(results.hits(query[:1_000], max(1, min(limit, 50))))
+        found = results.hits(query[:1_000], max(1, min(limit, 50)))
+        nothing = "nothing fits; try other words, or read the guide"
+        return Hits(found, text=joined(map(results.told, found)) or nothing)
 
     def explain(
         self, name: Annotated[str, "A name of the library, a word of the language, or a code as E0301."]
@@ -159,16 +161,17 @@ class Tools:
         """All there is to say of one name of the AIDL library (forms, parts, what is held, an example), or of
         the code of a diagnostic (the mistake, and the mended program).
         """
+        from aidl_lang.tools.reference import entry_blocks
         from aidl_lang.tools.reference.collect import reference
-        from aidl_lang.tools.reference.pages import entry_blocks
 
         code = name.strip("[] ").upper()
         if code in resources.codes():
-            return Page(code, resources.page(code))
+            return Page(code, resources.page(code), text=resources.page(code))
         known = reference()
         entry = known.find(name.strip()) or known.misspelt(name.strip())
         if entry is not None:
-            return Page(entry.name, joined(entry_blocks(entry, "#")))
+            text = joined(entry_blocks(entry, "#"))
+            return Page(entry.name, text, text=text)
         hints = did_you_mean([*known.near(name[:100]), *resources.near(code[:100])][:6])
         raise refusal("E0912", f"there is no `{name[:100]}` to tell about", *hints, "`search` finds names")
 
@@ -203,7 +206,7 @@ class Tools:
             is_all,
             list(found.alone[:most]),
             findings(diagnostics),
-            report=report,
+            text=report,
         )
 
     def edit_param(
@@ -236,7 +239,7 @@ class Tools:
             Replacement(place(edit.span), edit.span.text, edit.replacement),
             changes,
             findings(after.diagnostics),
-            report=joined([lead, changes, compact(after.diagnostics), text]),
+            text=joined([lead, changes, compact(after.diagnostics), text]),
         )
 
     def explain_conflict(self, program: Program, params: Params = None, files: Files = None) -> Conflicts:
@@ -260,7 +263,7 @@ class Tools:
             compiled.model.degrees if compiled.model else None,
             drawing.motions(compiled),
             findings(others),
-            report=joined(blocks),
+            text=joined(blocks),
         )
 
     def _compiled(self, program: str, params: Params, files: Files) -> tuple[SourceFile, Compiled, Reader]:

@@ -6,7 +6,6 @@ import math
 import re
 from collections.abc import Mapping
 from dataclasses import field
-from functools import cached_property
 from pathlib import Path
 
 from aidl_lang import parser, pipeline
@@ -52,24 +51,11 @@ class Limits:
     files: int = 100
     text: int = 60_000
     pixels: int = 1_000
-    entities: int = 12_000
-    constraints: int = 20_000
-    turns: int = 100_000
-    seconds_to_build: float = 8.0
-    seconds_to_solve: float = 12.0
-
-    @cached_property
-    def settings(self) -> Settings:
-        return Settings(
-            TextLimits(max_characters=self.characters),
-            BuildingLimits(
-                entities=self.entities,
-                constraints=self.constraints,
-                turns=self.turns,
-                seconds=self.seconds_to_build,
-            ),
-            SolverSettings(tolerance=1e-10, seconds=self.seconds_to_solve),
-        )
+    settings: Settings = Settings(
+        TextLimits(max_characters=400_000),
+        BuildingLimits(entities=12_000, constraints=20_000, turns=100_000, seconds=8.0),
+        SolverSettings(tolerance=1e-10, seconds=12.0),
+    )
 
 
 @record()
@@ -107,28 +93,20 @@ class Workspace:
         try:
             given = MemoryWorld(files)
         except FileError as error:
-            raise refusal(
-                "E0944",
-                f"the file name `{error.path[:200]}` cannot be used: {error.reason}",
-                "name files as the program imports them, as `parts/bolt.aidl`",
-            ) from None
+            message = f"the file name `{error.path[:200]}` cannot be used: {error.reason}"
+            hint = "name files as the program imports them, as `parts/bolt.aidl`"
+            raise refusal("E0944", message, hint) from None
         disk = None if self.root is None else Programs(DiskWorld(self.root))
         return SourceFile(PROGRAM, program.removeprefix("\ufeff")), Surroundings(given, disk)
 
     def _measure(self, program: str, files: Mapping[str, str]) -> None:
         characters, most = len(program) + sum(map(len, files.values())), self.limits.characters
         if characters > most:
-            raise refusal(
-                "E0944",
-                f"the program and its files have {characters:,} characters, more than the {most:,} allowed",
-                "say what repeats with `for` and with templates",
-            )
+            many = f"the program and its files have {characters:,} characters, more than the {most:,} allowed"
+            raise refusal("E0944", many, "say what repeats with `for` and with templates")
         if len(files) > self.limits.files:
-            raise refusal(
-                "E0944",
-                f"{len(files):,} files were given, more than the {self.limits.files:,} allowed",
-                "give only those that the program imports",
-            )
+            many = f"{len(files):,} files were given, more than the {self.limits.files:,} allowed"
+            raise refusal("E0944", many, "give only those that the program imports")
 
 
 # --- Numbers as people type them, with units, sums and fractions: `12cm`, `80 + 20`, `1/2in`, `3 1/2in`.
@@ -241,13 +219,9 @@ def find(known: tuple[Knob, ...], name: str) -> Knob:
     for wanted in (name, name.partition(".")[2]):
         if (path := names.find(wanted, by_path)) is not None:
             return by_path[path]
-    near = [hint for path in names.nearest(name, by_path) for hint in did_you_mean([path])]
-    raise refusal(
-        "E0945",
-        f"there is no param `{name}`",
-        *near,
-        f"params of this program: {first_few(ticked(by_path), _NAMED) or 'none'}",
-    )
+    near = did_you_mean(names.nearest(name, by_path))
+    there = f"params of this program: {first_few(ticked(by_path), _NAMED) or 'none'}"
+    raise refusal("E0945", f"there is no param `{name}`", *near, there)
 
 
 def require_in_range(compiled: Compiled, span: Span) -> None:

@@ -54,7 +54,7 @@ VERBS = {
 }
 """The verbs in the order of the help."""
 _TOGETHER = {
-    "build": ("compile", "watch", "sheet"),
+    "build": ("compile", "watch", "sheet", "show"),
     "check": ("fmt", "params"),
     "doc": ("guide", "grammar", "explain", "new", "tool-schema"),
     "generate": ("eval",),
@@ -92,7 +92,6 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _is_unheard() -> bool:
-    """Tells whether a message was lost."""
     return isinstance(sys.stderr, _Messages) and sys.stderr.is_lost
 
 

@@ -1,8 +1,9 @@
-"""`aidl compile`, `aidl watch` and `aidl sheet`: compiles a program and writes files."""
+"""`aidl compile`, `watch`, `sheet` and `show`: compiles a program, and draws it in files or the terminal."""
 
 from __future__ import annotations
 
 import argparse
+import os
 import re
 import sys
 import time
@@ -19,6 +20,7 @@ from aidl_lang.tools.cli import files
 from aidl_lang.tools.cli.files import UseError, exit_code, say, show
 from aidl_lang.tools.cli.options import (
     add_drawing,
+    add_look,
     add_outputs,
     add_params,
     add_pixels,
@@ -26,6 +28,7 @@ from aidl_lang.tools.cli.options import (
     add_strict,
     add_variant,
     choice,
+    count_to,
     flag,
     options,
     profile,
@@ -35,9 +38,11 @@ from aidl_lang.tools.cli.options import (
 if TYPE_CHECKING:
     from aidl_lang.common.diagnostics import Diagnostic
     from aidl_lang.export.job import Options
+    from aidl_lang.export.marks import Picture, Text
     from aidl_lang.pipeline import Compiled
     from aidl_lang.solver.hierarchy import Memory
     from aidl_lang.solver.problem import StageReport
+    from aidl_lang.tools.terminal import Label, Screen
 
 
 _DEFAULT_FORMAT = ".svg"
@@ -47,12 +52,8 @@ _PATIENCE = 1.0
 """Seconds after which progress is shown."""
 
 
-@record()
-class Target:
-    """A file to write and the format of its content."""
-
-    name: str
-    suffix: str
+Target = tuple[str, str]
+"""The name of a file to write, and the format of its content."""
 
 
 @record()
@@ -93,11 +94,11 @@ def targets(arguments: argparse.Namespace) -> tuple[Target, ...]:
     from aidl_lang.export.job import is_pattern
 
     names = arguments.output or [_beside(arguments.file, _DEFAULT_FORMAT)]
-    found = tuple(Target(name, _suffix(name, arguments.format)) for name in names)
-    for target in found:
-        if not is_pattern(target.name):
-            files.require_directory(target.name)
-    files.require_unread(target.name for target in found)
+    found = tuple((name, _suffix(name, arguments.format)) for name in names)
+    for name in names:
+        if not is_pattern(name):
+            files.require_directory(name)
+    files.require_unread(names)
     return found
 
 
@@ -135,16 +136,16 @@ def _write(
     made: list[tuple[str, bytes]] = []
     notes: list[Diagnostic] = []
     writing = compiled.exporting(options, _Progress())
-    for target in outputs:
-        found, said = contents(writing, target.name, target.suffix)
-        require_one(target.name, len(found))
-        if target.suffix != ".json" and any(note.code == "W0721" for note in said):
+    for target, suffix in outputs:
+        found, said = contents(writing, target, suffix)
+        require_one(target, len(found))
+        if suffix != ".json" and any(note.code == "W0721" for note in said):
             _keep_drawn(found)
         made += found
         notes += said
     _require_apart([name for name, _ in made])
     files.require_unread(name for name, _ in made)
-    if any(is_pattern(target.name) for target in outputs):
+    if any(is_pattern(target) for target, _ in outputs):
         files.make_directories(name for name, _ in made)
     for name, data in made:
         files.write(name, data)
@@ -170,11 +171,8 @@ def _require_apart(names: Sequence[str]) -> None:
     for name in names:
         place = Path(name).resolve()
         if name != files.STANDARD and place in seen:
-            raise UseError(
-                "E0927",
-                f"two outputs go to `{name}`, and nothing is written",
-                "give each a name of its own: further sheets, pages and parts have names made of it",
-            )
+            hint = "give each a name of its own: further sheets, pages and parts have names made of it"
+            raise UseError("E0927", f"two outputs go to `{name}`, and nothing is written", hint)
         seen.add(place)
 
 
@@ -268,13 +266,10 @@ def run_watch(arguments: argparse.Namespace) -> int:
     """Runs until interrupted."""
     from watchfiles import watch
 
-    if arguments.file == files.STANDARD:
-        raise UseError("E0902", "standard input cannot be watched", "name a file")
-    files.read(arguments.file)
     from aidl_lang.solver.hierarchy import Memory
 
+    files.require_watchable(arguments.file)
     targets(arguments)
-
     program, memory = Path(arguments.file).resolve(), Memory()
     read = _once(arguments, memory)
     for changes in watch(program.parent, watch_filter=lambda _, path: may_be_read(path)):
@@ -321,7 +316,7 @@ def register_sheet(parser: argparse.ArgumentParser) -> None:
     way.add_argument("--portrait", dest="landscape", action="store_const", const=False, help="stand it up")
     value(parser, "--scale", "N:M", "as in 1:2 (default: by fit)", _scale)
     value(parser, "--date", "TEXT", "the date in the title block (default: none)", str, "")
-    choice(parser, "--standard", ("iso", "ansi"), "paper and projection (default: iso)", "iso")
+    choice(parser, "--standard", ("iso", "ansi"), "paper and projection (default: iso)")
     add_pixels(parser)
 
 
@@ -333,9 +328,9 @@ def run_sheet(arguments: argparse.Namespace) -> int:
     start = time.perf_counter()
     source = files.read(arguments.file)
     names = arguments.output or [_beside(arguments.file, _SHEET)]
-    targets = [Target(name, sheet_suffix(name)) for name in names]
-    for target in targets:
-        files.require_directory(target.name)
+    suffixes = list(map(sheet_suffix, names))
+    for name in names:
+        files.require_directory(name)
     compiled = pipeline.compile(source, files.world(arguments.file), params=dict(arguments.params))
     show(compiled.diagnostics)
     if not compiled.ok:
@@ -343,12 +338,12 @@ def run_sheet(arguments: argparse.Namespace) -> int:
     draft = Draft(
         arguments.paper, arguments.landscape, arguments.scale, arguments.standard, arguments.date.strip()
     )
-    made = compiled.drafted([t.suffix for t in targets], draft, Options(pixels=arguments.pixels))
+    made = compiled.drafted(suffixes, draft, Options(pixels=arguments.pixels))
     written = []
-    for target, result in zip(targets, made, strict=True):
+    for target, result in zip(names, made, strict=True):
         datas = (result.data, *result.further)
-        require_one(target.name, len(datas))
-        for name, data in zip(file_names(target.name, len(datas)), datas, strict=True):
+        require_one(target, len(datas))
+        for name, data in zip(file_names(target, len(datas)), datas, strict=True):
             files.write(name, data)
             written.append(name)
     show(dict.fromkeys(note for result in made for note in result.notes))
@@ -376,3 +371,110 @@ def _scale(text: str) -> tuple[int, int]:
     if found is None:
         raise argparse.ArgumentTypeError(f"expected a scale such as 1:2 or 5:1, not `{text}`")
     return int(found[1]), int(found[2])
+
+
+# --- A preview of the drawing in the terminal.
+
+_PROMPT = 2
+"""Rows left free: for the command, and for the prompt after it."""
+_SAMPLES = 4
+"""Pixels drawn per shown pixel, across and down."""
+
+
+def register_show(parser: argparse.ArgumentParser) -> None:
+    """`aidl show`: a preview of the drawing in the terminal."""
+    from aidl_lang.tools.terminal import PROTOCOLS
+
+    add_program(parser)
+    add_params(parser)
+    add_look(parser)
+    value(parser, "--width", "COLUMNS", "columns to fill at most (default: the terminal)", count_to(1000))
+    about = "how to show it (default: auto, the best that the terminal is known for)"
+    choice(parser, "--protocol", ("auto", *PROTOCOLS), about)
+
+
+def run_show(arguments: argparse.Namespace) -> int:
+    from aidl_lang import pipeline
+    from aidl_lang.common.render import wants_colour
+    from aidl_lang.export import require_sheets
+    from aidl_lang.export.job import Job, Options
+    from aidl_lang.export.picture import picture
+    from aidl_lang.tools.terminal import protocol
+
+    options = Options(arguments.show, arguments.dimension, arguments.cut, theme=arguments.theme)
+    require_sheets(options)
+    source, world = files.read(arguments.file), files.world(arguments.file)
+    layers = tuple(sorted(arguments.show))
+    compiled = pipeline.compile(source, world, params=dict(arguments.params), show=layers)
+    show(compiled.diagnostics)
+    may_be_shown = compiled.ok or arguments.best_effort
+    if may_be_shown and compiled.model is not None and compiled.drawing is not None:
+        drawn = picture(Job(compiled.model, compiled.drawing, options=options))
+        name, out = arguments.protocol, sys.stdout
+        if name == "auto":
+            has_colour = wants_colour(out, os.environ)
+            name = protocol(os.environ, out.encoding, is_terminal=out.isatty(), has_colour=has_colour)
+        files.write(files.STANDARD, _shown(drawn, name, _screen(arguments.width)))
+    return exit_code(compiled.diagnostics) or int(not compiled.ok)
+
+
+def _screen(width: int | None) -> Screen:
+    """Returns the room for a picture; in a file up to twice as high as `width`."""
+    import shutil
+
+    from aidl_lang.tools.terminal import Screen, cell_size
+
+    size = shutil.get_terminal_size()
+    rows = max(1, size.lines - _PROMPT)
+    if sys.stdout.isatty():
+        return Screen(min(width or size.columns, size.columns), rows, cell_size(sys.stdout.fileno()))
+    return Screen(width or size.columns, width or rows)
+
+
+def _shown(picture: Picture, name: str, screen: Screen) -> bytes:
+    from aidl_lang.export.marks import coarse, framed
+    from aidl_lang.tools.terminal import GRAPHICS, fit, iterm, kitty, sixel
+
+    extent = fit(picture.width, picture.height, screen)
+    across, down = extent.pixels
+    picture = framed(picture, across / down)
+    if name not in GRAPHICS:
+        return _characters(picture, name, extent)
+    png = _png(coarse(picture, picture.width / across), max(across, down))
+    if name == "sixel":
+        return f"{sixel(png)}\n".encode()
+    return f"{(kitty if name == 'kitty' else iterm)(png, extent.columns, extent.rows)}\n".encode()
+
+
+def _characters(picture: Picture, name: str, extent: Screen) -> bytes:
+    from aidl_lang.export.marks import coarse, outlined, separated
+    from aidl_lang.tools.terminal import PIXELS, cells, has_true_colour, text, written
+
+    across, down = extent.columns * PIXELS[name][0], extent.rows * PIXELS[name][1]
+    picture, texts = separated(picture if name == "blocks" else outlined(picture))
+    png = _png(coarse(picture, picture.width / across), _SAMPLES * max(across, down))
+    grid = cells(name, png, extent.columns, extent.rows)
+    labels = [_label(mark, picture, extent) for mark in texts]
+    grid = written(grid, labels, only_ascii=name == "ascii")
+    lines = text(grid, true_colour=has_true_colour(os.environ))
+    return lines.encode(sys.stdout.encoding, "replace")
+
+
+def _label(mark: Text, picture: Picture, extent: Screen) -> Label:
+    """Returns a text of the picture in cells. A turned one is written level, about its middle."""
+    from aidl_lang.common.colors import rgb
+    from aidl_lang.tools.terminal import Label
+
+    left, bottom, right, top = mark.box
+    edge = {"start": left, "middle": (left + right) / 2, "end": right}
+    anchor = "middle" if mark.angle else mark.anchor
+    column = (edge[anchor] - picture.box[0]) / picture.width * extent.columns
+    row = (picture.box[3] - (bottom + top) / 2) / picture.height * extent.rows
+    return Label(mark.text, column, row, anchor, rgb(mark.color))
+
+
+def _png(picture: Picture, pixels: int) -> bytes:
+    from aidl_lang.export import render
+    from aidl_lang.export.job import Options
+
+    return render(picture, ".png", Options(pixels=pixels))

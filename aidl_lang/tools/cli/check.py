@@ -52,7 +52,6 @@ def _progress(what: str, done: int, count: int) -> None:
 
 
 def tell(name: str, sweep: Sweep | Ranges) -> None:
-    """Prints the faults on standard output; then a summary."""
     from aidl_lang.common.render import escape
     from aidl_lang.tools.ends import Sweep, sentence
 
@@ -87,7 +86,6 @@ def _summary(sweep: Sweep) -> str:
 
 
 def data(name: str, sweep: Sweep | Ranges) -> dict[str, Any]:
-    """Returns the results for JSON."""
     from aidl_lang.tools.ends import Sweep, described
 
     if not isinstance(sweep, Sweep):
@@ -125,25 +123,13 @@ def register_check(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("files", nargs="+", metavar="FILE", help="a program; - reads standard input")
     flag(parser, "--fix", "write the program with the fixes applied that are sure")
     how_far = parser.add_mutually_exclusive_group()
-    flag(
-        how_far,
-        "--ends",
-        "try both ends of the range of each param as well, one at a time, and tell how far each may go",
-    )
+    about = "try both ends of the range of each param as well, one at a time, and tell how far each may go"
+    flag(how_far, "--ends", about)
     flag(how_far, "--range", "walk each param over its range, and tell where something changes kind")
-    how_far.add_argument(
-        "--pairs",
-        dest="range",
-        action="store_const",
-        const="pairs",
-        help="as --range, and two params at a time",
-    )
-    how_far.add_argument(
-        "--no-solve",
-        dest="solve",
-        action="store_false",
-        help="find only what can be found without solving and drawing, which is quick",
-    )
+    about = "as --range, and two params at a time"
+    how_far.add_argument("--pairs", dest="range", action="store_const", const="pairs", help=about)
+    about = "find only what can be found without solving and drawing, which is quick"
+    how_far.add_argument("--no-solve", dest="solve", action="store_false", help=about)
     flag(parser, "--json", "print the diagnostics as JSON")
     add_variant(parser)
 
@@ -300,15 +286,11 @@ def run_params(arguments: argparse.Namespace) -> int:
         names = ("path", "value", "low", "high", "choices", "step", "unit", "doc")
         print_json([{name: getattr(knob, name) for name in names} for knob in knobs])
     else:
-        _print_table(knobs)
+        rows = [_row(knob) for knob in knobs]
+        widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+        for row in rows:
+            print("  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip())
     return exit_code(diagnostics)
-
-
-def _print_table(knobs: tuple[Knob, ...]) -> None:
-    rows = [_row(knob) for knob in knobs]
-    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    for row in rows:
-        print("  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip())
 
 
 def _row(knob: Knob) -> tuple[str, ...]:

@@ -84,8 +84,8 @@ def register_doc(parser: argparse.ArgumentParser) -> None:
 
 def run_doc(arguments: argparse.Namespace) -> int:
     from aidl_lang.common.render import TerminalStyle, wants_colour
+    from aidl_lang.tools.reference import to_dict
     from aidl_lang.tools.reference.collect import reference
-    from aidl_lang.tools.reference.pages import to_dict
 
     known, words = reference(), " ".join(arguments.name)
     if not words and arguments.picture:
@@ -113,7 +113,7 @@ def run_doc(arguments: argparse.Namespace) -> int:
         else:
             _list_all(known, style)
     elif arguments.picture:
-        from aidl_lang.tools.reference.pages import picture
+        from aidl_lang.tools.reference import picture
 
         files.require_directory(arguments.picture)
         files.write(arguments.picture, picture(found))
@@ -160,7 +160,7 @@ def _list(lines: Sequence[tuple[str, str]], style: TerminalStyle) -> None:
 
 def _show(entry: Entry, known: Reference, asked: str, style: TerminalStyle) -> None:
     from aidl_lang.common.names import find
-    from aidl_lang.tools.reference.pages import facts, forms
+    from aidl_lang.tools.reference import facts, forms
 
     if (synonym := find(asked, known.aliases)) is not None and asked not in known.entries:
         print(f"`{synonym}` is another name for {style.strong(entry.name)}.\n")
@@ -179,18 +179,13 @@ def register_guide(parser: argparse.ArgumentParser) -> None:
     """`aidl guide`: the language on a few pages, for a reader or a model that has never seen it."""
     kind = parser.add_mutually_exclusive_group()
     flag(kind, "--full", "with the whole reference after it")
-    value(
-        kind,
-        "--with",
-        "TOPICS",
-        "with the reference of some topics after it, as joints,hardware",
-        dest="topics",
-    )
+    about = "with the reference of some topics after it, as joints,hardware"
+    value(kind, "--with", "TOPICS", about, dest="topics")
     add_variant(kind)
 
 
 def run_guide(arguments: argparse.Namespace) -> int:
-    from aidl_lang.tools.reference.pages import full_guide, guide, guide_with
+    from aidl_lang.tools.reference import full_guide, guide, guide_with
 
     if arguments.topics is not None:
         print(guide_with(_topics(arguments.topics)), end="")
@@ -206,12 +201,8 @@ def _topics(written: str) -> list[str]:
     topics = [topic.strip() for topic in written.split(",")]
     for topic in topics:
         if topic not in known:
-            raise UseError(
-                "E0912",
-                f"the reference has no topic `{topic}`",
-                *did_you_mean(nearest(topic, known, 2)),
-                f"topics: {', '.join(known)}",
-            )
+            hints = (*did_you_mean(nearest(topic, known, 2)), f"topics: {', '.join(known)}")
+            raise UseError("E0912", f"the reference has no topic `{topic}`", *hints)
     return topics
 
 
@@ -219,13 +210,8 @@ def register_grammar(parser: argparse.ArgumentParser) -> None:
     """`aidl grammar`: the grammar, for servers that constrain what a model may write, and for readers."""
     value(parser, "--format", "FORMAT", f"{', '.join(FORMATS)} (default: lark)", str, "lark")
     flag(parser, "--fenced", "free text first, then the program in a block opened by ```aidl")
-    parser.add_argument(
-        "-o",
-        "--output",
-        default=files.STANDARD,
-        metavar="OUT",
-        help="where to write (default: standard output)",
-    )
+    about = "where to write (default: standard output)"
+    parser.add_argument("-o", "--output", default=files.STANDARD, metavar="OUT", help=about)
 
 
 def run_grammar(arguments: argparse.Namespace) -> int:
@@ -263,14 +249,11 @@ def run_explain(arguments: argparse.Namespace) -> int:
         return 0
     code = arguments.code.strip("[]").upper()
     if code not in resources.codes():
-        raise UseError("E0907", f"there is no code `{arguments.code}`", *_suggestions(resources.near(code)))
+        near = " or ".join(resources.near(code))
+        hints = [f"did you mean {near}?"] * bool(near) + ["`aidl explain` lists all codes"]
+        raise UseError("E0907", f"there is no code `{arguments.code}`", *hints)
     print(resources.page(code).rstrip())
     return 0
-
-
-def _suggestions(codes: list[str]) -> list[str]:
-    listed = "`aidl explain` lists all codes"
-    return [f"did you mean {' or '.join(codes)}?", listed] if codes else [listed]
 
 
 STARTER = """\
@@ -320,22 +303,14 @@ def structure_name(stem: str) -> str:
     return f"part_{name}".rstrip("_") if unfit else name
 
 
-_STYLES = ("openai", "anthropic", "mcp")
-
-
 def register_tool_schema(parser: argparse.ArgumentParser) -> None:
     """`aidl tool-schema`: the tools for agents as JSON, to be put into a request to a language model."""
-    choice(
-        parser,
-        "--style",
-        _STYLES,
-        "the API that they are for (default: openai, and servers that speak like it)",
-        _STYLES[0],
-    )
+    about = "the API that they are for (default: openai, and servers that speak like it)"
+    choice(parser, "--style", ("openai", "anthropic", "mcp"), about)
 
 
 def run_tool_schema(arguments: argparse.Namespace) -> int:
-    from aidl_lang.tools.agents.schema import STYLES
+    from aidl_lang.tools.agents.calling import STYLES
 
     print_json(STYLES[arguments.style]())
     return 0

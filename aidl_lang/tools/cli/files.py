@@ -50,7 +50,6 @@ def say(line: str, end: str = "\n") -> None:
 
 
 def print_json(found: object, indent: int = 2) -> None:
-    """Prints data as JSON on standard output."""
     import json
 
     print(json.dumps(found, indent=indent, ensure_ascii=False))
@@ -89,6 +88,13 @@ def read(name: str) -> SourceFile:
     return SourceFile(name, decoded(data, f"`{name}`"))
 
 
+def require_watchable(name: str) -> None:
+    """Refuses standard input, and a program that cannot be read."""
+    if name == STANDARD:
+        raise UseError("E0902", "standard input cannot be watched", "name a file")
+    read(name)
+
+
 def world(name: str) -> DiskWorld:
     """Returns the world whose imports are read beside the program."""
     from aidl_lang.common.world import DiskWorld
@@ -104,7 +110,6 @@ def require_directory(name: str) -> None:
 
 
 def make_directories(names: Iterable[str]) -> None:
-    """Makes the directories of files that are missing."""
     for parent in dict.fromkeys(Path(name).parent for name in names if name != STANDARD):
         try:
             parent.mkdir(parents=True, exist_ok=True)

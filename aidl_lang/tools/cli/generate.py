@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import argparse
 import difflib
+import json
 import os
 import re
 import sys
 import time
-from dataclasses import field, replace
+from dataclasses import replace
 from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
@@ -57,8 +58,7 @@ def run_generate(arguments: argparse.Namespace) -> int:
     task = Task(arguments.request, image, files.read(arguments.edit).text if arguments.edit else None)
     asked = provider(arguments)
     language = _language(arguments)
-    runs = [_Run(arguments, places, task, asked, language, k) for k in range(arguments.runs)]
-    done = [run.generation() for run in runs]
+    done = [_conversation(arguments, places, task, asked, language, k) for k in range(arguments.runs)]
     weights = [run.verdict.weight if run.verdict is not None else (2,) for run in done]
     best = min(range(len(done)), key=lambda k: weights[k])
     return _deliver(arguments, places, done[best], f"run {best + 1}: " if len(done) > 1 else "")
@@ -71,13 +71,6 @@ class _Places:
     program: str | None
     drawings: tuple[str, ...]
     transcript: str | None
-
-
-def _of_run(name: str, number: int) -> str:
-    """Returns `phone.run-3.aidl` beside `phone.aidl`."""
-    path = Path(name)
-    stem, dot, rest = path.name.partition(".")
-    return str(path.with_name(f"{stem}.run-{number}{dot}{rest}"))
 
 
 def _places(arguments: argparse.Namespace) -> _Places:
@@ -112,74 +105,71 @@ def _language(arguments: argparse.Namespace) -> Language:
     return language if arguments.edit == files.STANDARD else replace(language, file=Path(arguments.edit).name)
 
 
-@record(frozen=False)
-class _Run:
-    """One conversation, with its display."""
+class _Heard:
+    """A line on a terminal that tells how much of a reply has come."""
 
-    arguments: argparse.Namespace
-    places: _Places
-    task: Task
-    provider: Provider
-    language: Language
-    number: int
-    heard: int = 0
-    shown: int = 0
-    is_watched: bool = field(default_factory=lambda: sys.stderr.isatty())
+    def __init__(self, name: str) -> None:
+        self.name = name
+        self.heard = self.shown = 0
 
-    def generation(self) -> Generation:
-        """Returns the conversation. Raises AidlError if not one reply could be had."""
-        from aidl_lang.tools.llm.generation import Settings, generate
-
-        asked = sampling(self.arguments)
-        if asked.seed is not None:
-            asked = replace(asked, seed=asked.seed + self.number)
-        settings = Settings(self.arguments.attempts, asked)
-        start = time.perf_counter()
-        done = generate(self.task, self.provider, self.language, settings, self._hear, self._listen)
-        self._erase()
-        if done.failure is not None and done.verdict is None:
-            raise AidlError(done.failure)
-        if done.failure is not None:
-            show([done.failure])
-        self._save(done)
-        say(f"{self._name}{_outcome(done, time.perf_counter() - start)}")
-        if self.arguments.runs > 1 and self.places.program and done.verdict is not None:
-            name = _of_run(self.places.program, self.number + 1)
-            files.write(name, done.verdict.program.encode())
-        return done
-
-    @property
-    def _name(self) -> str:
-        return f"run {self.number + 1}: " if self.arguments.runs > 1 else ""
-
-    def _hear(self, attempt: int, text: str) -> None:
+    def __call__(self, attempt: int, text: str) -> None:
         self.heard += len(text)
-        if self.is_watched and self.heard >= self.shown + 50:
+        if sys.stderr.isatty() and self.heard >= self.shown + 50:
             self.shown = self.heard
-            say(f"\r{self._name}attempt {attempt}: {self.heard:,} characters …", end="")
+            say(f"\r{self.name}attempt {attempt}: {self.heard:,} characters …", end="")
 
-    def _listen(self, generation: Generation) -> None:
-        self._erase()
-        say(f"{self._name}{_attempt_line(generation)}")
-        self._save(generation)
-
-    def _erase(self) -> None:
-        if self.is_watched and self.shown:
+    def erase(self) -> None:
+        if self.shown:
             say("\r\x1b[K", end="")
         self.heard = self.shown = 0
 
-    def _save(self, generation: Generation) -> None:
-        import json
 
-        from aidl_lang.tools.llm.generation import to_dict
+def _conversation(
+    arguments: argparse.Namespace,
+    places: _Places,
+    task: Task,
+    provider: Provider,
+    language: Language,
+    number: int,
+) -> Generation:
+    """Returns one conversation, told and saved as it goes. Raises AidlError without a single reply."""
+    from aidl_lang.tools.llm.generation import Settings, generate, to_dict
 
-        if self.places.transcript is None:
-            return
-        name = self.places.transcript
-        if self.arguments.runs > 1:
-            name = _of_run(name, self.number + 1)
-        document = to_dict(generation, self.provider.name, self.language.name)
-        files.write(name, json.dumps(document, indent=1, ensure_ascii=False).encode() + b"\n")
+    name = f"run {number + 1}: " if arguments.runs > 1 else ""
+    heard = _Heard(name)
+
+    def of_run(file: str) -> str:
+        """Returns `phone.run-3.aidl` beside `phone.aidl`."""
+        path = Path(file)
+        stem, dot, rest = path.name.partition(".")
+        return str(path.with_name(f"{stem}.run-{number + 1}{dot}{rest}")) if arguments.runs > 1 else file
+
+    def save(generation: Generation) -> None:
+        if places.transcript is not None:
+            document = to_dict(generation, provider.name, language.name)
+            data = json.dumps(document, indent=1, ensure_ascii=False).encode() + b"\n"
+            files.write(of_run(places.transcript), data)
+
+    def listen(generation: Generation) -> None:
+        heard.erase()
+        say(f"{name}{_attempt_line(generation)}")
+        save(generation)
+
+    asked = sampling(arguments)
+    if asked.seed is not None:
+        asked = replace(asked, seed=asked.seed + number)
+    start = time.perf_counter()
+    done = generate(task, provider, language, Settings(arguments.attempts, asked), heard, listen)
+    heard.erase()
+    if done.failure is not None:
+        if done.verdict is None:
+            raise AidlError(done.failure)
+        show([done.failure])
+    save(done)
+    say(f"{name}{_outcome(done, time.perf_counter() - start)}")
+    if arguments.runs > 1 and places.program and done.verdict is not None:
+        files.write(of_run(places.program), done.verdict.program.encode())
+    return done
 
 
 def _attempt_line(generation: Generation) -> str:
@@ -215,8 +205,9 @@ def _number(value: int | None) -> str:
 def _deliver(arguments: argparse.Namespace, places: _Places, generation: Generation, name: str) -> int:
     verdict = generation.verdict
     if verdict is None:
-        last = generation.attempts[-1].reply
-        say(f"{name}no reply held a program; the last one begins: {_beginning(last.text)}")
+        last = re.sub(r"\s+", " ", generation.attempts[-1].reply.text.strip())
+        begins = last if len(last) <= 80 else last[:79] + "…"
+        say(f"{name}no reply held a program; the last one begins: {begins!r}")
         return 1
     program = verdict.program
     if arguments.edit:
@@ -270,11 +261,6 @@ def _draw(places: _Places, program: str, arguments: argparse.Namespace) -> None:
     compiled = pipeline.compile(SourceFile(os.path.basename(places.program), program), world)
     for name, data in [(name, compiled.export(Path(name).suffix.lower())) for name in places.drawings]:
         files.write(name, data)
-
-
-def _beginning(text: str) -> str:
-    line = re.sub(r"\s+", " ", text.strip())
-    return repr(line if len(line) <= 80 else line[:79] + "…")
 
 
 _PACKAGE = "aidl_eval"

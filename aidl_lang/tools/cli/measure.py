@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from aidl_lang.common.diagnostics import Diagnostic
@@ -13,7 +13,6 @@ from aidl_lang.tools.cli.files import UseError, exit_code, print_json, say, show
 from aidl_lang.tools.cli.options import add_params, add_pixels, add_program, flag, value
 
 if TYPE_CHECKING:
-    from aidl_lang.common.source import SourceFile
     from aidl_lang.export.comparison import Comparison
     from aidl_lang.geometry.boolean import Contact
     from aidl_lang.geometry.curves import Vec
@@ -32,16 +31,8 @@ def register_measure(parser: argparse.ArgumentParser) -> None:
         "paths", nargs="*", metavar="PATH", help="a structure or a geometry (default: each body)"
     )
     add_params(parser)
-    value(
-        parser,
-        "--density",
-        "NAME=KG/M3",
-        "the density of a material; may be given several times",
-        _density,
-        [],
-        dest="densities",
-        action="append",
-    )
+    about = "the density of a material; may be given several times"
+    value(parser, "--density", "NAME=KG/M3", about, _density, [], dest="densities", action="append")
     flag(parser, "--json", "print everything as JSON, with all digits")
 
 
@@ -137,7 +128,8 @@ def _block(part: Part) -> Iterator[str]:
     if part.volume is not None:
         rows.append(("volume", f"{_number(part.volume)} mm³"))
     if part.mass is not None:
-        rows.append(("mass", _mass(part.mass)))
+        grams = part.mass
+        rows.append(("mass", f"{_number(grams)} g" if grams < 1000 else f"{_number(grams / 1000)} kg"))
     for name, said in rows:
         yield f"  {name:<11}{said}"
 
@@ -190,10 +182,6 @@ def _number(value: float, tiny: float = 0.0) -> str:
 
 def _place(p: Vec, size: float) -> str:
     return f"({_number(p[0], 1e-9 * size)}, {_number(p[1], 1e-9 * size)})"
-
-
-def _mass(grams: float) -> str:
-    return f"{_number(grams)} g" if grams < 1000 else f"{_number(grams / 1000)} kg"
 
 
 def _print_json(compiled: Compiled, found: Survey) -> None:
@@ -264,18 +252,18 @@ def _suffix(name: str, arguments: argparse.Namespace) -> str:
 
 def _comparison(arguments: argparse.Namespace) -> Comparison | int:
     """Returns the comparison, or the exit code if a side is wrong, which has been reported."""
+    from aidl_lang import pipeline
+
     names = arguments.before, arguments.after or arguments.before
     if arguments.after is None and not (arguments.params_before or arguments.params_after):
-        raise UseError(
-            "E0922",
-            f"there is nothing to compare `{names[0]}` with",
-            "name a second program, or say what differs, as in `--to width=200`",
-        )
+        hint = "name a second program, or say what differs, as in `--to width=200`"
+        raise UseError("E0922", f"there is nothing to compare `{names[0]}` with", hint)
     sources = {name: files.read(name) for name in dict.fromkeys(names)}
     versions: list[Compiled] = []
     code = 0
     for name, own in zip(names, (arguments.params_before, arguments.params_after), strict=True):
-        compiled = _compiled(name, sources[name], dict(arguments.params) | dict(own))
+        params = dict(arguments.params) | dict(own)
+        compiled = pipeline.compile(sources[name], files.world(name), params=params)
         may_be_used = compiled.ok or arguments.best_effort
         if may_be_used and compiled.model is not None and compiled.drawing is not None:
             versions.append(compiled)
@@ -283,12 +271,6 @@ def _comparison(arguments: argparse.Namespace) -> Comparison | int:
             show([*compiled.errors, _refusal(name, compiled)], quiet=True)
             code = max(code, exit_code(compiled.errors), 1)
     return code or versions[0].compared(versions[1])
-
-
-def _compiled(name: str, source: SourceFile, params: Mapping[str, str]) -> Compiled:
-    from aidl_lang import pipeline
-
-    return pipeline.compile(source, files.world(name), params=params)
 
 
 def _refusal(name: str, compiled: Compiled) -> Diagnostic:

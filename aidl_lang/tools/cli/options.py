@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 import math
-from collections.abc import Callable, Collection, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import fields
 from functools import partial
 from pathlib import Path
@@ -28,14 +28,9 @@ def flag(parser: argparse._ActionsContainer, name: str, help: str) -> None:
     parser.add_argument(name, action="store_true", help=help)
 
 
-def choice(
-    parser: argparse._ActionsContainer,
-    name: str,
-    choices: Iterable[str],
-    help: str,
-    default: str | None = None,
-) -> None:
-    parser.add_argument(name, choices=choices, default=default, help=help)
+def choice(parser: argparse._ActionsContainer, name: str, choices: Sequence[str], help: str) -> None:
+    """Adds an option that is one of some words, of which the first is the default."""
+    parser.add_argument(name, choices=choices, default=choices[0], help=help)
 
 
 def value(
@@ -51,22 +46,21 @@ def value(
     parser.add_argument(name, type=type, default=default, metavar=metavar, help=help, **more)
 
 
-def size(text: str) -> tuple[float, float]:
-    from aidl_lang.checking import units
+def _in_units(what: str) -> Callable[[str], Any]:
+    """Returns the function of `units` that reads a length or a size, as argparse wants it."""
 
-    try:
-        return units.size(text)
-    except ValueError as reason:
-        raise argparse.ArgumentTypeError(str(reason)) from None
+    def read(text: str) -> Any:
+        from aidl_lang.checking import units
+
+        try:
+            return getattr(units, what)(text)
+        except ValueError as reason:
+            raise argparse.ArgumentTypeError(str(reason)) from None
+
+    return read
 
 
-def length(text: str) -> float:
-    from aidl_lang.checking import units
-
-    try:
-        return units.length(text)
-    except ValueError as reason:
-        raise argparse.ArgumentTypeError(str(reason)) from None
+length, size = _in_units("length"), _in_units("size")
 
 
 LONGEST_NESTING = 600
@@ -78,14 +72,8 @@ def add_program(parser: argparse.ArgumentParser) -> None:
 
 
 def add_variant(parser: argparse._ActionsContainer) -> None:
-    value(
-        parser,
-        "--variant",
-        "NAME",
-        "the language, or a subset of it: full (the default), no-hierarchy, no-constraints, paper",
-        _variant,
-        "full",
-    )
+    about = "the language, or a subset of it: full (the default), no-hierarchy, no-constraints, paper"
+    value(parser, "--variant", "NAME", about, _variant, "full")
 
 
 def add_strict(parser: argparse._ActionsContainer) -> None:
@@ -108,25 +96,16 @@ def add_pixels(parser: argparse.ArgumentParser) -> None:
 
 
 def add_look(parser: argparse.ArgumentParser) -> None:
-    """Adds the options for the contents of a picture."""
-    value(
-        parser,
-        "--show",
-        "LAYERS",
+    about = (
         "draw these over the picture, separated by commas: names, points, bbox, constraints, dof, plan; "
-        "with --sheet: names, numbers, list",
-        _layers,
-        frozenset(),
+        "with --sheet: names, numbers, list"
     )
+    value(parser, "--show", "LAYERS", about, _layers, frozenset())
     flag(parser, "--dimension", "draw dimensions of what is sized")
     flag(parser, "--cut", "the outlines alone, as hairlines: what a cutter follows")
-    choice(
-        parser,
-        "--theme",
-        ("colour", "blueprint", "ink", "cutter"),
-        "the look of all of it: as coloured (the default), white on blue, black on white, or as --cut",
-        "colour",
-    )
+    themes = ("colour", "blueprint", "ink", "cutter")
+    about = "the look of all of it: as coloured (the default), white on blue, black on white, or as --cut"
+    choice(parser, "--theme", themes, about)
     flag(parser, "--best-effort", "draw how far the solver came even if it did not solve")
 
 
@@ -136,7 +115,6 @@ def add_outputs(parser: argparse.ArgumentParser, help: str) -> None:
 
 
 def add_drawing(parser: argparse.ArgumentParser) -> None:
-    """Adds the options for what to draw and where to write it."""
     add_outputs(
         parser,
         "where to write; the suffix tells the format; may be given several times; - is standard output "
@@ -147,7 +125,6 @@ def add_drawing(parser: argparse.ArgumentParser) -> None:
 
 
 def add_drawing_options(parser: argparse.ArgumentParser) -> None:
-    """Adds the options for how a drawing is written."""
     add = partial(value, parser)
     add("--format", "SUFFIX", "format of outputs whose name does not tell it")
     add_look(parser)
@@ -159,51 +136,25 @@ def add_drawing_options(parser: argparse.ArgumentParser) -> None:
         "colours, layers and order of what a cutter follows: plain, lightburn, glowforge, ponoko, or a "
         "file such as shop.toml",
     )
-    add(
-        "--sheet",
-        "SIZE",
-        "lay the parts apart on sheets to cut them from: 600x400, 60x40cm, 24x18in, a3, letter",
-        size,
-    )
+    about = "lay the parts apart on sheets to cut them from: 600x400, 60x40cm, 24x18in, a3, letter"
+    add("--sheet", "SIZE", about, size)
     add("--spacing", "MM", "between parts on a sheet, and to its edge (default: 3)", length, 3.0)
-    add(
-        "--nest",
-        "SECONDS",
+    about = (
         "pack parts on sheets by their outlines, not by their boxes, if that saves material "
-        "(default: for 5 seconds)",
-        count_to(LONGEST_NESTING),
-        nargs="?",
-        const=5,
+        "(default: for 5 seconds)"
     )
-    add(
-        "--kerf",
-        "MM",
-        "width of the cut: outlines grow by half of it, so that parts keep their size",
-        length,
-        0.0,
-    )
-    choice(
-        parser,
-        "--units",
-        ("mm", "in"),
-        "of the coordinates in an SVG or a DXF: millimetres (the default) or inches",
-        "mm",
-    )
-    choice(
-        parser,
-        "--dxf",
-        ("arcs", "r12", "splines"),
+    add("--nest", "SECONDS", about, count_to(LONGEST_NESTING), nargs="?", const=5)
+    about = "width of the cut: outlines grow by half of it, so that parts keep their size"
+    add("--kerf", "MM", about, length, 0.0)
+    about = "of the coordinates in an SVG or a DXF: millimetres (the default) or inches"
+    choice(parser, "--units", ("mm", "in"), about)
+    about = (
         "the kind of a DXF: each outline one polyline of lines and arcs (the default), the same for old "
-        "programs, or exact with splines",
-        "arcs",
+        "programs, or exact with splines"
     )
-    add(
-        "--tolerance",
-        "MM",
-        "how far the arcs of a DXF may be from the curves that they stand for (default: 0.01)",
-        _tolerance,
-        0.01,
-    )
+    choice(parser, "--dxf", ("arcs", "r12", "splines"), about)
+    about = "how far the arcs of a DXF may be from the curves that they stand for (default: 0.01)"
+    add("--tolerance", "MM", about, _tolerance, 0.01)
     add("--tile", "SIZE", "print 1:1 over several pages of this size: a4, letter", size)
     add("--overlap", "MM", "of neighbouring pages (default: 10)", length, 10.0)
 
@@ -233,31 +184,17 @@ def add_provider(parser: argparse.ArgumentParser) -> None:
         _server,
     )
     add("--timeout", "SECONDS", "how long the model may be silent (default: 600)", _seconds, 600.0)
-    add(
-        "--price",
-        "IN/OUT",
-        "dollars per million tokens, where the server does not tell the cost (default: $AIDL_PRICE)",
-        _price,
-    )
+    about = "dollars per million tokens, where the server does not tell the cost (default: $AIDL_PRICE)"
+    add("--price", "IN/OUT", about, _price)
 
 
 def provider(arguments: argparse.Namespace) -> Closable:
     """Returns the model that the options of `add_provider` name. Raises AidlError."""
-    from aidl_lang.tools.llm.providers import Connection, connect
+    from aidl_lang.tools.llm.providers import Connection, Constrained, connect
 
-    said = Connection(
-        provider=arguments.provider,
-        model=arguments.model,
-        base_url=arguments.base_url,
-        timeout=arguments.timeout,
-        price=arguments.price,
-    )
-    connected = connect(said)
-    if not arguments.constrain:
-        return connected
-    from aidl_lang.tools.llm.providers import Constrained
-
-    return Constrained(connected, arguments.constrain)
+    names = ("provider", "model", "base_url", "timeout", "price")
+    connected = connect(Connection(**{name: getattr(arguments, name) for name in names}))
+    return Constrained(connected, arguments.constrain) if arguments.constrain else connected
 
 
 def sampling(arguments: argparse.Namespace) -> Sampling:
@@ -294,7 +231,7 @@ def _thickness(text: str) -> float:
 
 
 def _tolerance(text: str) -> float:
-    value = length(text)
+    value: float = length(text)
     if not value > 0:
         raise argparse.ArgumentTypeError(f"expected a length above 0, such as 0.01 or 0.001in, not `{text}`")
     return value

@@ -24,7 +24,6 @@ LOCALHOST = "127.0.0.1"
 
 
 def port(text: str) -> int:
-    """Parses the port of an option."""
     if not (text.isascii() and text.isdecimal()) or int(text) > 65535:
         raise argparse.ArgumentTypeError(f"expected a port from 0 to 65535, not `{text}`")
     return int(text)
@@ -50,23 +49,17 @@ def address(text: str) -> str:
 def add_options(parser: argparse.ArgumentParser) -> None:
     """Adds where a page is served, and whether the browser is opened."""
     value(parser, "--port", "N", "the port (default: one that is free)", port, 0)
-    value(
-        parser,
-        "--host",
-        "ADDRESS",
-        f"an address of this machine alone (default: {LOCALHOST})",
-        address,
-        LOCALHOST,
-    )
+    about = f"an address of this machine alone (default: {LOCALHOST})"
+    value(parser, "--host", "ADDRESS", about, address, LOCALHOST)
     flag(parser, "--no-open", "do not open the browser")
 
 
-def require(what: str, *packages: str) -> None:
-    """Raises UseError if what serves pages is not installed."""
+def require(what: str, *packages: str, code: str = "E0952", extra: str = "editor") -> None:
+    """Raises UseError if what serves is not installed."""
     missing = [name for name in packages if find_spec(name) is None]
     if missing:
         message = f"{what} needs {', '.join(ticked(missing))}, not installed here"
-        raise UseError("E0952", message, "pip install 'aidl-lang[editor]'")
+        raise UseError(code, message, f"pip install 'aidl-lang[{extra}]'")
 
 
 def open_browser(url: str) -> None:
@@ -89,9 +82,6 @@ def listen(host: str, port: int, code: str, hint: str) -> socket.socket:
         raise UseError(code, f"{where} cannot be served: {why}", hint) from None
 
 
-_NEEDED = ("pygls", "starlette", "uvicorn", "websockets")
-
-
 def register_preview(parser: argparse.ArgumentParser) -> None:
     """`aidl preview`: a program drawn in the browser beside any editor, again on every save."""
     parser.epilog = (
@@ -104,10 +94,8 @@ def register_preview(parser: argparse.ArgumentParser) -> None:
 
 def run_preview(arguments: argparse.Namespace) -> int:
     """Runs until interrupted."""
-    require("the preview", *_NEEDED)
-    if arguments.file == files.STANDARD:
-        raise UseError("E0902", "standard input cannot be watched", "name a file")
-    files.read(arguments.file)
+    require("the preview", "pygls", "starlette", "uvicorn", "websockets")
+    files.require_watchable(arguments.file)
     hint = "without `--port` a free one is taken"
     listener = listen(arguments.host, arguments.port, "E0953", hint)
 
@@ -151,21 +139,13 @@ _CODE = "E0954"
 
 def register_lsp(parser: argparse.ArgumentParser) -> None:
     """`aidl lsp`: serve editors over the Language Server Protocol, on standard input and output."""
-    value(
-        parser,
-        "--tcp",
-        "HOST:PORT",
-        "wait for one client at this address instead; port 0 takes one that is free",
-        _address,
-    )
+    about = "wait for one client at this address instead; port 0 takes one that is free"
+    value(parser, "--tcp", "HOST:PORT", about, _address)
 
 
 def run_lsp(arguments: argparse.Namespace) -> int:
     """Returns the exit code of the protocol: 0 if the client has shut the server down before its exit."""
-    if find_spec("pygls") is None:
-        raise UseError(
-            _CODE, "the server needs `pygls`, not installed here", "pip install 'aidl-lang[editor]'"
-        )
+    require("the server", "pygls", code=_CODE)
     listener = None
     if arguments.tcp is not None:
         host, port = arguments.tcp
@@ -193,14 +173,12 @@ _TOKEN = "AIDL_MCP_TOKEN"
 def register_mcp(parser: argparse.ArgumentParser) -> None:
     """`aidl mcp`: serve the tools to agents over the Model Context Protocol, on standard input and output."""
     value(parser, "--root", "DIR", "let programs import files below this folder (default: no files at all)")
-    value(
-        parser, "--http", "PORT", "serve over HTTP on this machine instead; 0 takes a port that is free", port
-    )
+    about = "serve over HTTP on this machine instead; 0 takes a port that is free"
+    value(parser, "--http", "PORT", about, port)
 
 
 def run_mcp(arguments: argparse.Namespace) -> int:
-    if find_spec("mcp") is None:
-        raise UseError("E0942", "the server needs `mcp`, not installed here", "pip install 'aidl-lang[mcp]'")
+    require("the server", "mcp", code="E0942", extra="mcp")
     if arguments.root is not None and not Path(arguments.root).is_dir():
         raise UseError("E0942", f"there is no folder `{arguments.root}` to import from")
     root = None if arguments.root is None else Path(arguments.root).resolve()

@@ -159,15 +159,7 @@ def register_sweep(parser: argparse.ArgumentParser) -> None:
         "1 some are not, 2 wrong use."
     )
     add_program(parser)
-    parser.add_argument(
-        "-D",
-        dest="params",
-        action="append",
-        default=[],
-        type=_axis,
-        metavar="NAME=VALUES",
-        help="vary a param",
-    )
+    value(parser, "-D", "NAME=VALUES", "vary a param", _axis, [], dest="params", action="append")
     value(parser, "--table", "CSV", "a variant for each row; columns are params")
     value(parser, "--random", "N", "draw so many variants within the ranges of params", count_to(1_000_000))
     value(parser, "--seed", "N", "of what is drawn (default: 1)", int, 1)
@@ -176,11 +168,8 @@ def register_sweep(parser: argparse.ArgumentParser) -> None:
         "drawings (out/{width}-{n}.dxf: a name in braces stands for a value, {n} for the number), "
         "a table (.csv, .jsonl, .parquet) or a contact sheet (.html, .pdf, .png); may be given several times",
     )
-    flag(
-        parser,
-        "--drawing-sheet",
-        "make the drawings technical drawings on paper, as `aidl sheet` does: .pdf, .svg or .png",
-    )
+    about = "make the drawings technical drawings on paper, as `aidl sheet` does: .pdf, .svg or .png"
+    flag(parser, "--drawing-sheet", about)
     add_drawing_options(parser)
     add_variant(parser)
     add_strict(parser)
@@ -188,29 +177,16 @@ def register_sweep(parser: argparse.ArgumentParser) -> None:
     add = partial(value, running)
     add("--on", "ENGINE", "local (the default), or a scheduler of Dask: tcp://host:8786", str, "local")
     add("--jobs", "N", "processes of this machine (default: one for each processor)", count_to(1000))
-    add(
-        "--time-limit",
-        "SECONDS",
-        "for each variant (default: what a compile, its files and measures may take)",
-        count_to(100_000),
-    )
+    about = "for each variant (default: what a compile, its files and measures may take)"
+    add("--time-limit", "SECONDS", about, count_to(100_000))
     flag(running, "--stop-on-error", "stop at the first variant that fails")
     flag(running, "--resume", "go on with the same sweep that was broken off")
     add("--cache", "DIR", "keep what comes of variants there, and take what is kept")
     add("--cache-size", "MB", "most that the cache keeps (default: 4096)", count_to(1_000_000))
-    running.add_argument(
-        "--no-timings",
-        dest="timings",
-        action="store_false",
-        help="leave the seconds out of tables, which are the same every time then",
-    )
-    choice(
-        running,
-        "--progress",
-        ("auto", "off", "json"),
-        "a line on a terminal (the default), nothing, or JSON lines on standard error",
-        "auto",
-    )
+    about = "leave the seconds out of tables, which are the same every time then"
+    running.add_argument("--no-timings", dest="timings", action="store_false", help=about)
+    about = "a line on a terminal (the default), nothing, or JSON lines on standard error"
+    choice(running, "--progress", ("auto", "off", "json"), about)
     flag(running, "--json", "print a summary with all failures as JSON")
 
 
@@ -307,12 +283,10 @@ def _job(arguments: argparse.Namespace, source: Any) -> Job:
 
 
 def _plan(arguments: argparse.Namespace, knobs: Any) -> Plan:
-    from aidl_lang.tools.sweeping.plan import axis, planned
+    from aidl_lang.tools.sweeping.plan import axis, planned, read_table
 
     rows: Rows | None = None
     if arguments.table:
-        from aidl_lang.tools.sweeping.plan import read_table
-
         rows = read_table(Path(arguments.table), knobs, files.reads)
         if rows.labels:
             say(f"{arguments.table}: carried along, as no param is called so: {named(rows.labels)}")
@@ -344,7 +318,6 @@ def _tell(session: Session, arguments: argparse.Namespace) -> None:
 
 
 def line(session: Session) -> str:
-    """Returns the result of a sweep in a line."""
     count, done = len(session.job.plan), len(session.rows)
     parts = [counted(count, "variant") if done == count else f"{done} of {counted(count, 'variant')}"]
     parts.append(f"{done - session.failed} well, {session.failed or 'none'} failing")
@@ -355,13 +328,12 @@ def line(session: Session) -> str:
 
 def _list(failures: Sequence[Row], turns: Sequence[str], outputs: Sequence[str]) -> None:
     from aidl_lang.common.render import escape
+    from aidl_lang.tools.sweeping.outputs import said
     from aidl_lang.tools.sweeping.plan import labels
 
     for row in failures[:_MOST_TOLD]:
         say(f"failing: {row.variant.number}: {escape(_short(labels(row.variant.values)))}")
         for fault in row.outcome.errors[:3]:
-            from aidl_lang.tools.sweeping.outputs import said
-
             say(f"  {escape(said(fault))}")
         if not row.outcome.errors:
             say(f"  {escape(row.message)}")

@@ -7,13 +7,13 @@ import time
 from collections.abc import Callable, Generator, Iterator, Sequence
 from dataclasses import asdict, field, replace
 from functools import lru_cache
-from typing import Any, TypeAlias
+from typing import Any, TypeAlias, TypeVar, cast
 
 from aidl_lang import pipeline
 from aidl_lang.building.model import Knob
 from aidl_lang.common.crew import Broke, Crew
 from aidl_lang.common.diagnostics import Diagnostic, Severity
-from aidl_lang.common.processes import Guarded, count
+from aidl_lang.common.processes import Guarded, Limit, count
 from aidl_lang.common.prose import first_few, literal
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
@@ -25,6 +25,7 @@ from aidl_lang.tools.sweeping.bundle import BROKEN, Fault, fault, patience
 # --- The values of a param to try: the ends of its range, and values between them and the written one.
 
 Value: TypeAlias = float | str | bool
+Place: TypeAlias = tuple[str, str | None, int | None]
 
 _SLACK = 1e-9
 _FINEST = 1e-3
@@ -233,9 +234,9 @@ _PATIENCE = 15.0
 """Seconds for one compile, beyond which the limit is not searched."""
 _PAUSE = 0.1
 
-Asking: TypeAlias = tuple[Value, bool]
-"""A value to try, and whether its faults are to be explained."""
-Course: TypeAlias = Generator[Asking, Tried, Turned]
+T = TypeVar("T")
+Course: TypeAlias = Generator[tuple[Any, ...], Any, T]
+"""A search in processes: it yields functions with arguments, and is sent their results, or a limit met."""
 
 
 def sweep(
@@ -253,87 +254,80 @@ def sweep(
     start = time.monotonic()
     wanted = [(knob, end) for knob in knobs for end in ends(knob)]
     places = frozenset(fault(d).place for d in known)
-    courses = [_course(knob, end, places) for knob, end in wanted[:_MOST]]
+    courses = [_course(job, knob, end, places) for knob, end in wanted[:_MOST]]
     if not courses:
         return Sweep((), _rangeless(knobs), 0, 0, 0.0)
-    paths = [knob.path for knob, _ in wanted]
-    turned, compiled = _followed(job, paths, courses, progress, start + seconds)
+    turned, compiled = followed("aidl_lang.tools.ends", courses, job.seconds, progress, start + seconds)
     left = len(wanted) - len(turned)
-    return Sweep(turned, _rangeless(knobs), left, compiled, time.monotonic() - start)
+    return Sweep(tuple(turned), _rangeless(knobs), left, compiled, time.monotonic() - start)
 
 
 def _rangeless(knobs: Sequence[Knob]) -> tuple[Knob, ...]:
     return tuple(k for k in knobs if not k.choices and k.low is None and not isinstance(k.value, bool))
 
 
-def _course(knob: Knob, end: Value, known: frozenset[tuple[str, str | None, int | None]]) -> Course:
+def _course(job: SweepJob, knob: Knob, end: Value, known: frozenset[Place]) -> Course[Turned]:
     """Tries the value at an end; if it fails, searches the last value that does not."""
-    last = yield end, True
+    last = yield from _asked(job, knob, end, True)
     if last.ok:
-        return Turned(knob, end, replace(last, faults=_new(last.faults, known)))
+        return Turned(knob, end, replace(last, faults=tuple(f for f in last.faults if f.place not in known)))
     if isinstance(end, str | bool) or knob.choices or last.was_given_up or last.seconds > _PATIENCE:
         return Turned(knob, end, last)
     search = limit(knob, end)
     try:
         value = next(search)
         while True:
-            found = yield value, False
+            found = yield from _asked(job, knob, value, False)
             if found.was_given_up:
                 return Turned(knob, end, last)
             value = search.send(found.ok)
     except StopIteration as done:
         works, fails = done.value
-    beyond = last if fails == end else (yield fails, True)
+    beyond = last if fails == end else (yield from _asked(job, knob, fails, True))
     return Turned(knob, end, last, works, (fails, beyond))
 
 
-def _new(faults: Sequence[Fault], known: frozenset[tuple[str, str | None, int | None]]) -> tuple[Fault, ...]:
-    return tuple(each for each in faults if each.place not in known)
+def _asked(job: SweepJob, knob: Knob, value: Value, explained: bool) -> Course[Tried]:
+    found = yield tried, job, knob.path, value, explained
+    if isinstance(found, Limit):
+        return Tried(False, (Fault("E0603", BROKEN[found]),), was_given_up=True)
+    return cast(Tried, found)
 
 
-def _followed(
-    job: SweepJob,
-    paths: Sequence[str],
-    courses: Sequence[Course],
+def followed(
+    module: str,
+    courses: Sequence[Course[T]],
+    seconds: float,
     progress: Callable[[int, int], None],
     until: float,
-) -> tuple[tuple[Turned, ...], int]:
-    """Follows searches side by side, each one compile after the other. Returns their results, in their order,
-    as far as there was time, and the number of compiles.
+) -> tuple[list[T], int]:
+    """Follows searches side by side, each one call after the other, in processes that have loaded a module.
+    Returns their results, in their order, as far as there was time, and the number of calls.
     """
-    workers = Guarded(min(count(), len(courses)), "aidl_lang.tools.ends")
-    crew: Crew[int, Tried] = Crew(workers)
-    results: dict[int, Turned] = {}
-    compiled = 0
-
-    def ask(number: int, asking: Asking) -> None:
-        crew.give(number, job.seconds, tried, job, paths[number], *asking)
-
+    workers = Guarded(min(count(), len(courses)), module)
+    crew: Crew[int, Any] = Crew(workers)
+    results: dict[int, T] = {}
+    calls = 0
     try:
         progress(0, len(courses))
         for number, course in enumerate(courses):
-            ask(number, next(course))
+            crew.give(number, seconds, *next(course))
         while crew and time.monotonic() < until:
             checkpoint()
             for number, found in crew.came(_PAUSE):
-                compiled += 1
+                calls += 1
+                if isinstance(found, Broke) and found.limit is None:
+                    raise found.error
                 try:
-                    ask(number, courses[number].send(_came(found)))
+                    asked = courses[number].send(found.limit if isinstance(found, Broke) else found)
                 except StopIteration as done:
                     results[number] = done.value
                     progress(len(results), len(courses))
+                else:
+                    crew.give(number, seconds, *asked)
     finally:
         workers.close()
-    return tuple(results[number] for number in sorted(results)), compiled
-
-
-def _came(found: Tried | Broke) -> Tried:
-    """Returns the result of a process, or the way it ended."""
-    if isinstance(found, Tried):
-        return found
-    if found.limit is None:
-        raise found.error
-    return Tried(False, (Fault("E0603", BROKEN[found.limit]),), was_given_up=True)
+    return [results[number] for number in sorted(results)], calls
 
 
 # --- The results at the ends of params, as sentences and as data.
@@ -406,7 +400,6 @@ def _subject(faults: Sequence[Fault]) -> str:
 
 
 def described(sweep: Sweep) -> list[dict[str, Any]]:
-    """Returns everything that was tried, as JSON has it."""
     return [_end(each) for each in sweep.turned]
 
 
@@ -427,6 +420,3 @@ def _end(turned: Turned) -> dict[str, Any]:
 
 def _faults(tried: Tried) -> list[dict[str, Any]]:
     return [asdict(fault) for fault in tried.faults]
-
-
-__all__ = ["Sweep", "SweepJob", "Turned", "described", "has_range", "sentence", "sweep"]

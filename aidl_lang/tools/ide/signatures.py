@@ -16,8 +16,8 @@ from aidl_lang.syntax import ast
 from aidl_lang.syntax.tables import Token
 from aidl_lang.tools.ide.site import Where, around, innermost_brackets, scope_at, site_at, spot_at
 from aidl_lang.tools.ide.workspace import View
+from aidl_lang.tools.reference import facts, forms
 from aidl_lang.tools.reference.collect import Doc, Entry, doc, reference
-from aidl_lang.tools.reference.pages import facts, forms
 from aidl_lang.tools.reference.signatures import split_items, written
 from aidl_lang.typecheck import Program
 

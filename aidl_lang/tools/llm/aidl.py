@@ -6,8 +6,9 @@ import difflib
 import re
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from dataclasses import field, replace
+from dataclasses import replace
 from functools import cached_property
+from itertools import zip_longest
 
 from aidl_lang import parser, pipeline
 from aidl_lang.checking.subset import Variant
@@ -27,7 +28,7 @@ from aidl_lang.tools.llm import generation
 from aidl_lang.tools.llm.intent import Ledger, Loss, request
 from aidl_lang.tools.llm.messages import Image, Verdict
 from aidl_lang.tools.mending import Mended, mend
-from aidl_lang.tools.reference.pages import guide
+from aidl_lang.tools.reference import guide
 
 # --- Writes a changed program as a minimal edit of the one before: what is as it was keeps its text.
 
@@ -40,7 +41,7 @@ def merge(before: str, after: str) -> str:
     old, new = (parse(SourceFile("part.aidl", text)) for text in (before, after))
     if has_errors(old.diagnostics) or has_errors(new.diagnostics):
         return after
-    text = _merged(_Body.of_file(old.module), _Body.of_file(new.module))
+    text = _merged(_of_file(old.module), _of_file(new.module))
     result = parse(SourceFile("part.aidl", text))
     if has_errors(result.diagnostics) or _means(result.module) != _means(new.module):
         return after
@@ -69,6 +70,10 @@ class _Item:
         return _key(self.node)
 
     @property
+    def text(self) -> str:
+        return self.lead + self.node.span.text + self.tail
+
+    @property
     def subject(self) -> tuple[object, ...]:
         """A key of its subject: two statements of one subject are versions of each other."""
         match self.node:
@@ -84,45 +89,41 @@ class _Item:
                 return (type(self.node),)
 
 
-@record()
-class _Body:
-    """The statements of a file or a block, and the text after the last of them."""
+_Body = tuple[Sequence[_Item], str]
+"""The statements of a file or a block, and the text after the last of them."""
 
-    items: tuple[_Item, ...]
-    end: str
 
-    @classmethod
-    def of_file(cls, module: ast.Module) -> _Body:
-        return cls.between(module.source.text, module.statements, 0, len(module.source.text))
+def _body(text: str, statements: Sequence[ast.Statement], start: int, end: int) -> _Body:
+    items = []
+    for node, after in zip_longest(statements, statements[1:]):
+        following = after.span.start if after is not None else end
+        line_end = text.find("\n", node.span.end, following)
+        stop = node.span.end if line_end < 0 else line_end
+        items.append(_Item(node, text[start : node.span.start], text[node.span.end : stop]))
+        start = stop
+    return items, text[start:end]
 
-    @classmethod
-    def of_block(cls, block: ast.Block) -> _Body:
-        return cls.between(block.span.source.text, block.statements, block.span.start + 1, block.span.end - 1)
 
-    @classmethod
-    def between(cls, text: str, statements: Sequence[ast.Statement], start: int, end: int) -> _Body:
-        items = []
-        for i, node in enumerate(statements):
-            following = statements[i + 1].span.start if i + 1 < len(statements) else end
-            line_end = text.find("\n", node.span.end, following)
-            stop = node.span.end if line_end < 0 else line_end
-            items.append(_Item(node, text[start : node.span.start], text[node.span.end : stop]))
-            start = stop
-        return cls(tuple(items), text[start:end])
+def _of_file(module: ast.Module) -> _Body:
+    return _body(module.source.text, module.statements, 0, len(module.source.text))
+
+
+def _of_block(block: ast.Block) -> _Body:
+    return _body(block.span.source.text, block.statements, block.span.start + 1, block.span.end - 1)
 
 
 def _merged(old: _Body, new: _Body) -> str:
-    return "".join(_pieces(old, new)) + old.end
+    return "".join(_pieces(old[0], new[0])) + old[1]
 
 
-def _pieces(old: _Body, new: _Body) -> Iterator[str]:
-    keys = [item.key for item in old.items], [item.key for item in new.items]
+def _pieces(old: Sequence[_Item], new: Sequence[_Item]) -> Iterator[str]:
+    keys = [item.key for item in old], [item.key for item in new]
     matcher = difflib.SequenceMatcher(None, *keys, autojunk=False)
     for kind, i, i_end, j, j_end in matcher.get_opcodes():
         if kind == "equal":
-            yield from (_text(item) for item in old.items[i:i_end])
+            yield from (item.text for item in old[i:i_end])
         else:
-            yield from _versions(old.items[i:i_end], new.items[j:j_end])
+            yield from _versions(old[i:i_end], new[j:j_end])
 
 
 def _versions(gone: Sequence[_Item], come: Sequence[_Item]) -> Iterator[str]:
@@ -133,15 +134,11 @@ def _versions(gone: Sequence[_Item], come: Sequence[_Item]) -> Iterator[str]:
         renamed = (o for o in left if type(o.node) is type(item.node) and o.subject not in subjects)
         was = next(same, None) or next(renamed, None)
         if was is None:
-            yield _text(item)
+            yield item.text
             continue
         left.remove(was)
         lead = was.lead if was.lead.strip() or not item.lead.strip() else item.lead
         yield lead + _version(was.node, item.node) + (item.tail if item.tail.strip() else was.tail)
-
-
-def _text(item: _Item) -> str:
-    return item.lead + item.node.span.text + item.tail
 
 
 def _version(old: ast.Statement, new: ast.Statement) -> str:
@@ -150,7 +147,7 @@ def _version(old: ast.Statement, new: ast.Statement) -> str:
         return new.span.text
     heads = [_head(node, block) for node, block in zip((old, new), blocks, strict=True) if block]
     head = heads[0] if _spaceless(heads[0]) == _spaceless(heads[1]) else heads[1]
-    return f"{head}{{{_merged(_Body.of_block(blocks[0]), _Body.of_block(blocks[1]))}}}"
+    return f"{head}{{{_merged(_of_block(blocks[0]), _of_block(blocks[1]))}}}"
 
 
 def _block(node: ast.Statement) -> ast.Block | None:
@@ -224,29 +221,22 @@ class Aidl:
         return is_rooted and not has_errors(parsed.diagnostics)
 
     def conversation(self, before: str | None = None) -> AidlConversation:
-        conversation = AidlConversation(self)
-        if before is not None:
-            conversation.begin_with(before)
-        return conversation
+        return AidlConversation(self, before)
 
 
-@record(frozen=False)
 class AidlConversation:
-    """Consecutive programs, with their intents and the answers to them."""
+    """Consecutive programs, with their intents and the answers to them; those of `before` shall stay."""
 
-    language: Aidl
-    told: set[str] = field(default_factory=set)
-    asked: Counter[tuple[str, ...]] = field(default_factory=Counter)
-
-    def __post_init__(self) -> None:
-        self.settings = pipeline.Settings.of(self.language.variant)
-        self.world = self.language.world and Programs(self.language.world)
+    def __init__(self, language: Aidl, before: str | None) -> None:
+        self.language = language
+        self.told: set[str] = set()
+        self.asked: Counter[tuple[str, ...]] = Counter()
+        self.settings = pipeline.Settings.of(language.variant)
+        self.world = language.world and Programs(language.world)
         self.ledger = Ledger(self.world, self.settings)
-
-    def begin_with(self, program: str) -> None:
-        """Notes the program to be changed, whose intents shall stay."""
-        source = self._source(program)
-        self.ledger.note(source, self._compiled(source))
+        if before is not None:
+            source = self._source(before)
+            self.ledger.note(source, self._compiled(source))
 
     def judge(self, program: str) -> Verdict:
         source = self._source(program)
@@ -287,7 +277,14 @@ class AidlConversation:
         missing = self.ledger.missing
         is_partial = self.language.plans and compiled.ok and _is_partial(source, compiled)
         distance = (int(not compiled.ok), -generation.STAGES.index(stage) if wrong else 0, int(is_partial))
-        picture = (Image("image/png", _picture(compiled)),) if is_partial else ()
+        numbers: dict[str, float] = {}
+        if compiled.model is not None:
+            detached = sum(d.code == "W0705" for d in compiled.diagnostics)
+            numbers = counted(compiled.model) | {"detached": detached}
+        pictures: tuple[Image, ...] = ()
+        if is_partial:
+            options = Options(pixels=_PIXELS, show=frozenset({"plan", "names"}))
+            pictures = (Image("image/png", compiled.export(".png", options)),)
         return Verdict(
             ok=compiled.ok and not is_partial,
             stage=stage,
@@ -296,10 +293,10 @@ class AidlConversation:
             fixes=fixes,
             codes=tuple(d.code for d in wrong),
             is_partial=is_partial,
-            images=picture,
+            images=pictures,
             missing=tuple(loss.phrase for loss in missing),
             weight=(*distance, len(wrong), len(missing), len(warnings)),
-            numbers=_numbers(compiled),
+            numbers=numbers,
             compiled=compiled,
         )
 
@@ -346,16 +343,6 @@ def _is_partial(source: SourceFile, compiled: Compiled) -> bool:
     if any(structure.is_empty for structure in compiled.model.root.walk()):
         return True
     return any(isinstance(node, ast.Todo) for node in ast.walk(parser.parse(source).module))
-
-
-def _picture(compiled: Compiled) -> bytes:
-    return compiled.export(".png", Options(pixels=_PIXELS, show=frozenset({"plan", "names"})))
-
-
-def _numbers(compiled: Compiled) -> dict[str, float]:
-    if compiled.model is None:
-        return {}
-    return counted(compiled.model) | {"detached": sum(d.code == "W0705" for d in compiled.diagnostics)}
 
 
 def counted(model: SolvedModel) -> dict[str, float]:

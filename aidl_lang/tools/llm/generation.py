@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import field
+from dataclasses import asdict, field
+from functools import partial
 from itertools import groupby
 from typing import Any
 
@@ -17,7 +18,6 @@ from aidl_lang.geometry.solved import SolvedModel, SolvedStructure
 from aidl_lang.pipeline import Compiled
 from aidl_lang.tools.llm.intent.placing import CONTACTS
 from aidl_lang.tools.llm.messages import (
-    Conversation,
     ConversationOver,
     Finish,
     Image,
@@ -64,7 +64,10 @@ def errors(compiled: Compiled) -> str:
     count = counted(len(wrong), "error")
     blocks = [f"The program is wrong: {count}, the first of them in the check of {stage}.", compact(wrong)]
     if stage == "solve" and compiled.model is not None:
-        blocks.append(_freedom(compiled.model))
+        degrees = "unknown" if compiled.model.degrees is None else compiled.model.degrees
+        motions = report(compiled.model, _MOST)
+        left = f"Degrees of freedom left beside these constraints: {degrees}"
+        blocks.append("\n- ".join([left, *motions]))
     return "\n\n".join(blocks)
 
 
@@ -86,13 +89,6 @@ def remarks(compiled: Compiled, *, may_constrain: bool) -> str:
 def floats(model: SolvedModel) -> tuple[str, ...]:
     """Returns paths, without the root, of structures that no constraint places."""
     return tuple(path.removeprefix(f"{model.root.path}.") for path in model.mobility().floating)
-
-
-def _freedom(model: SolvedModel) -> str:
-    degrees = "unknown" if model.degrees is None else str(model.degrees)
-    return f"Degrees of freedom left beside these constraints: {degrees}" + "".join(
-        f"\n- {each}" for each in report(model, _MOST)
-    )
 
 
 def mended(before: str, after: str, titles: Sequence[str]) -> str:
@@ -169,16 +165,15 @@ class Attempt:
 
 @record()
 class Generation:
-    """The result of a task: the attempts, and the verdict on the program kept (None without any program)."""
+    """The result of a task: the attempts, the verdict on the program kept (None without any program), the
+    conversation as it was sent, and the reason why no further reply could be had.
+    """
 
     task: Task
     attempts: tuple[Attempt, ...]
     verdict: Verdict | None
     messages: tuple[Message, ...]
-    """The conversation as it was sent."""
-
     failure: Diagnostic | None = None
-    """The reason why no further reply could be had."""
 
     @property
     def ok(self) -> bool:
@@ -198,77 +193,50 @@ def generate(
     listen: Callable[[Generation], None] = lambda generation: None,
 ) -> Generation:
     """Runs the conversation. `hear` gets an attempt's text in pieces, `listen` the state after each."""
-    run = _Run(task, provider, language, settings or Settings(), hear)
+    settings, conversation = settings or Settings(), language.conversation(task.program)
+    images = (task.image,) if task.image else ()
+    messages = [Message("system", language.guide()), Message("user", _request(task, language), images)]
     attempts: list[Attempt] = []
-    failure = None
+    failure, number = None, 0
     try:
-        for attempt in run.attempts():
-            attempts.append(attempt)
-            listen(Generation(task, tuple(attempts), attempt.verdict, tuple(run.messages)))
+        while not attempts or attempts[-1].answer:
+            step = len(attempts) + 1
+            reply = provider.reply(messages, settings.sampling, partial(hear, step))
+            messages.append(Message("assistant", reply.text.strip() or "(nothing)"))
+            found = find_program(reply.text, language.fences, language.reads)
+            verdict = None
+            if found.program is None or (reply.finish is Finish.CUT and found.is_open):
+                program, answer = None, _without_program(language.fences[0], reply, found.is_open)
+            else:
+                program, verdict = found.program, conversation.judge(found.program)
+                answer = verdict.feedback
+            number += not (verdict is not None and verdict.is_partial)
+            is_last = number >= settings.attempts or step >= 2 * settings.attempts
+            if reply.finish is Finish.REFUSED or is_last:
+                answer = ""
+            if answer:
+                messages.append(Message("user", answer, verdict.images if verdict else ()))
+            attempts.append(Attempt(step, reply, program, verdict, answer))
+            listen(Generation(task, tuple(attempts), verdict, tuple(messages)))
     except ProviderError as reason:
         failure = reason.diagnostic
     except ConversationOver:
         pass  # what is there is all of it
     judged = [a.verdict for a in attempts if a.verdict is not None]
     best = min(reversed(judged), key=lambda verdict: verdict.weight, default=None)
-    verdict = run.conversation.finish(best) if best is not None else None
-    return Generation(task, tuple(attempts), verdict, tuple(run.messages), failure)
+    kept = conversation.finish(best) if best is not None else None
+    return Generation(task, tuple(attempts), kept, tuple(messages), failure)
 
 
-class _Run:
-    def __init__(
-        self,
-        task: Task,
-        provider: Provider,
-        language: Language,
-        settings: Settings,
-        hear: Callable[[int, str], None],
-    ) -> None:
-        self.provider, self.language, self.settings, self.hear = provider, language, settings, hear
-        self.conversation: Conversation = language.conversation(task.program)
-        images = (task.image,) if task.image else ()
-        self.messages = [
-            Message("system", language.guide()),
-            Message("user", _request(task, language), images),
-        ]
-
-    def attempts(self) -> Iterator[Attempt]:
-        """Yields replies with the answers to them, until nothing is left to answer."""
-        number = steps = 0
-        while number < self.settings.attempts and steps < 2 * self.settings.attempts:
-            attempt = self._attempt(steps + 1)
-            steps += 1
-            number += not (attempt.verdict is not None and attempt.verdict.is_partial)
-            is_last = number == self.settings.attempts or steps == 2 * self.settings.attempts
-            if attempt.reply.finish is Finish.REFUSED or is_last or not attempt.answer:
-                yield Attempt(steps, attempt.reply, attempt.program, attempt.verdict, "")
-                return
-            images = attempt.verdict.images if attempt.verdict else ()
-            self.messages.append(Message("user", attempt.answer, images))
-            yield attempt
-
-    def _attempt(self, number: int) -> Attempt:
-        def hear(text: str) -> None:
-            self.hear(number, text)
-
-        reply = self.provider.reply(self.messages, self.settings.sampling, hear)
-        self.messages.append(Message("assistant", reply.text.strip() or "(nothing)"))
-        found = find_program(reply.text, self.language.fences, self.language.reads)
-        if found.program is None or (reply.finish is Finish.CUT and found.is_open):
-            return Attempt(number, reply, None, None, self._without_program(reply, found.is_open))
-        verdict = self.conversation.judge(found.program)
-        return Attempt(number, reply, found.program, verdict, verdict.feedback)
-
-    def _without_program(self, reply: Reply, is_open: bool) -> str:
-        fence = self.language.fences[0]
-        if reply.finish is Finish.CUT:
-            return (
-                "Your reply was cut off at the limit on its length, before its program ended. Think less, or "
-                f"write the program shorter, and answer with the whole of it in one ```{fence} block."
-            )
-        if is_open:
-            return f"The last block is not closed. Answer with the whole program between ```{fence} and ```."
-        return f"Your reply holds no program. End it with the whole program in one ```{fence} block."
+def _without_program(fence: str, reply: Reply, is_open: bool) -> str:
+    if reply.finish is Finish.CUT:
+        return (
+            "Your reply was cut off at the limit on its length, before its program ended. Think less, or "
+            f"write the program shorter, and answer with the whole of it in one ```{fence} block."
+        )
+    if is_open:
+        return f"The last block is not closed. Answer with the whole program between ```{fence} and ```."
+    return f"Your reply holds no program. End it with the whole program in one ```{fence} block."
 
 
 def _request(task: Task, language: Language) -> str:
@@ -299,9 +267,9 @@ def to_dict(generation: Generation, provider: str, language: str) -> dict[str, A
         "before": generation.task.program,
         "messages": [_message(message) for message in generation.messages],
         "attempts": [_attempt(attempt) for attempt in generation.attempts],
-        "result": verdict_to_dict(generation.verdict) if generation.verdict else None,
+        "result": generation.verdict and _verdict(generation.verdict),
         "failure": generation.failure.message if generation.failure else None,
-        "usage": usage_to_dict(generation.usage),
+        "usage": asdict(generation.usage),
     }
 
 
@@ -315,13 +283,13 @@ def _attempt(attempt: Attempt) -> dict[str, Any]:
         "number": attempt.number,
         "model": attempt.reply.model,
         "finish": str(attempt.reply.finish),
-        "usage": usage_to_dict(attempt.reply.usage),
+        "usage": asdict(attempt.reply.usage),
         "program": attempt.program,
-        "verdict": verdict_to_dict(attempt.verdict) if attempt.verdict else None,
+        "verdict": attempt.verdict and _verdict(attempt.verdict),
     }
 
 
-def verdict_to_dict(verdict: Verdict) -> dict[str, Any]:
+def _verdict(verdict: Verdict) -> dict[str, Any]:
     return {
         "ok": verdict.ok,
         "stage": verdict.stage,
@@ -332,7 +300,3 @@ def verdict_to_dict(verdict: Verdict) -> dict[str, Any]:
         "missing": list(verdict.missing),
         "numbers": dict(verdict.numbers),
     }
-
-
-def usage_to_dict(usage: Usage) -> dict[str, Any]:
-    return {"input": usage.input, "output": usage.output, "cost": usage.cost}

@@ -13,7 +13,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import field
 from enum import StrEnum
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal, Protocol
+from typing import TYPE_CHECKING, Literal, Protocol, TypeVar
 
 from aidl_lang.common.diagnostics import AidlError, Diagnostic
 from aidl_lang.common.records import record
@@ -123,7 +123,6 @@ class Image:
 
     @property
     def uri(self) -> str:
-        """The picture as a data URI."""
         return f"data:{self.media_type};base64,{self.base64}"
 
 
@@ -154,15 +153,14 @@ class Usage:
     cost: float | None = 0.0
 
     def __add__(self, other: Usage) -> Usage:
-        unknown = None in (self.cost, other.cost)
-        return Usage(
-            _total(self.input, other.input),
-            _total(self.output, other.output),
-            None if unknown else (self.cost or 0.0) + (other.cost or 0.0),
-        )
+        counts = _total(self.input, other.input), _total(self.output, other.output)
+        return Usage(*counts, _total(self.cost, other.cost))
 
 
-def _total(a: int | None, b: int | None) -> int | None:
+N = TypeVar("N", int, float)
+
+
+def _total(a: N | None, b: N | None) -> N | None:
     return None if a is None or b is None else a + b
 
 
@@ -176,17 +174,19 @@ class Finish(StrEnum):
 
 @record()
 class Reply:
+    """What a model has answered.
+
+    model    as the server names it
+    seconds  until the whole reply was there
+    date     the day of the reply, as in 2026-01-31
+    """
+
     text: str
     usage: Usage
     finish: Finish
     model: str
-    """The model that answered, as the server names it."""
-
     seconds: float | None = None
-    """Time until the whole reply was there."""
-
     date: str | None = None
-    """The day of the reply, as in 2026-01-31."""
 
 
 class ProviderError(AidlError):
@@ -266,39 +266,31 @@ def find_program(text: str, fences: Sequence[str], reads: Callable[[str], bool])
 
 @record()
 class Verdict:
-    """The judgement of one program."""
+    """The judgement of one program.
+
+    stage       the stage that failed, or `done`
+    feedback    for the model: the errors and their remedies; for a right program, remarks or nothing
+    program     the program after mending
+    fixes       the titles of the fixes that were made
+    codes       the codes of the errors left
+    is_partial  true for a program to be continued: the model is shown its state, and asked to go on
+    images      pictures that go with the feedback
+    missing     intents of earlier programs of the conversation that this one lost, a phrase each
+    weight      distance from right, to choose the best of several: less is better
+    numbers     counts of structures, constraints, degrees
+    """
 
     ok: bool
     stage: str
-    """The stage that failed, or `done`."""
-
     feedback: str
-    """For the model: the errors and their remedies; for a right program, remarks or nothing."""
-
     program: str
-    """The program after mending."""
-
     fixes: tuple[str, ...] = ()
-    """The titles of the fixes that were made."""
-
     codes: tuple[str, ...] = ()
-    """The codes of the errors left."""
-
     is_partial: bool = False
-    """True for a program to be continued: the model is shown its state, and asked to go on."""
-
     images: tuple[Image, ...] = ()
-    """Pictures that go with the feedback."""
-
     missing: tuple[str, ...] = ()
-    """Intents of earlier programs of the conversation that this one lost, a phrase each."""
-
     weight: tuple[int, ...] = ()
-    """Distance from right, to choose the best of several: less is better."""
-
     numbers: Mapping[str, float] = field(default_factory=dict)
-    """Counts of structures, constraints, degrees."""
-
     compiled: Compiled | None = None
 
 

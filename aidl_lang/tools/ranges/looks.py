@@ -28,7 +28,7 @@ from aidl_lang.geometry.drawing import Drawing
 from aidl_lang.geometry.region import region_polygons
 from aidl_lang.geometry.sections import Section, fill, intersection
 from aidl_lang.geometry.solved import SolvedGeometry, SolvedModel, SolvedStructure
-from aidl_lang.tools.ends import clause
+from aidl_lang.tools.ends import Place, clause
 from aidl_lang.tools.sweeping.bundle import OF_KIND, Fault, fault
 
 _SAME_BOX = 1e-5
@@ -44,7 +44,6 @@ _RADII = frozenset(("radius", "rx", "ry"))
 _INDEX = re.compile(r"\[[^\]]*\]")
 _RANK = re.compile(r"\((\d+) of \d+\)$")
 
-Place = tuple[str, str | None, int | None]
 Pair = tuple[str, str]
 Cutter = tuple[str, bool, Bounds]
 

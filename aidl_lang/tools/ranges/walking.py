@@ -12,7 +12,7 @@ import math
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from itertools import combinations, pairwise
+from itertools import combinations, pairwise, product
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,16 +20,14 @@ from numpy.typing import NDArray
 from aidl_lang import pipeline
 from aidl_lang.building.lower import lower
 from aidl_lang.building.model import Knob
-from aidl_lang.common.crew import Broke, Crew
-from aidl_lang.common.processes import Guarded, count
+from aidl_lang.common.processes import Limit
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
 from aidl_lang.common.source import SourceFile
 from aidl_lang.compiled import Compiled
 from aidl_lang.solver import Memory, Problem, Settings, Status, solve
-from aidl_lang.tools.ends import SweepJob, allowed, checked, is_whole, rounded
+from aidl_lang.tools.ends import Course, SweepJob, allowed, checked, followed, is_whole, rounded
 from aidl_lang.tools.ranges.looks import Change, Look, differences, look, may_meet, moves
-from aidl_lang.tools.ranges.pairs import Pair, Spot, paired
 from aidl_lang.tools.sweeping.bundle import BROKEN
 
 FINEST = 1e-3
@@ -50,7 +48,11 @@ _UNEVEN = 0.55
 """What is left of the unevenness of a move on half of its way: 1/4 if smooth, 1/2 at a bend, 1 in a jump."""
 _JUMP = 1e-3
 """The least jump, in sizes of the drawing or radians."""
-_PAUSE = 0.1
+_COARSE = frozenset(("error", "reading", "openings", "pieces", "contact", "warning"))
+"""The kinds of changes that can be told between values far from each other: an edge may have been turned."""
+
+Spot = tuple[tuple[str, float], ...]
+"""Values of params by path."""
 
 
 @record()
@@ -92,6 +94,25 @@ class Walk:
     @property
     def ok(self) -> bool:
         return not self.turns and not self.stopped
+
+
+@record()
+class Meeting:
+    """Values of two params at which something is of another kind only together."""
+
+    values: tuple[float, float]
+    changes: tuple[Change, ...]
+
+
+@record()
+class Pair:
+    """Two params, the values that were tried of both, and why no more were; "" if all were."""
+
+    one: Knob
+    other: Knob
+    meetings: tuple[Meeting, ...] = ()
+    tried: int = 0
+    stopped: str = ""
 
 
 @record()
@@ -348,6 +369,51 @@ def _numbers(problem: Problem) -> NDArray[np.float64]:
     return np.concatenate((problem.tape.constants, problem.initial))
 
 
+# --- Two params at a time, at the ends of their ranges and halfway there: what is of another kind then, and
+# is not where one of them alone is turned.
+
+
+def coarse(knob: Knob) -> list[float]:
+    """Returns the ends of a range and what lies halfway, without the value as written."""
+    written, (low, high) = float(knob.value), knob.range or (0.0, 0.0)
+    aims = [low, (low + written) / 2, (high + written) / 2, high]
+    values = [float(round(aim)) if is_whole(knob) else allowed(knob, aim) for aim in aims]
+    return [value for value in dict.fromkeys(values) if abs(value - written) > 1e-9 * max(1.0, abs(written))]
+
+
+def paired(one: Knob, other: Knob, compiled: Callable[[Spot], Compiled], until: float) -> Pair:
+    """Tries two params together; the nearest values first."""
+    looks: dict[Spot, Look] = {}
+
+    def at(*spot: tuple[str, float]) -> Look:
+        if spot not in looks:
+            checkpoint()
+            looks[spot] = look(compiled(spot), 0.0, looks.get(()))
+        return looks[spot]
+
+    def keys(*spot: tuple[str, float]) -> set[object]:
+        return {change.key for change in differences(at(), at(*spot))}
+
+    found: list[Meeting] = []
+    tried = 0
+    for a, b in sorted(
+        product(coarse(one), coarse(other)), key=lambda ab: _far(one, ab[0]) + _far(other, ab[1])
+    ):
+        if time.monotonic() > until:
+            return Pair(one, other, tuple(found), tried, "it takes too long")
+        alone = keys((one.path, a)) | keys((other.path, b))
+        both = differences(at(), at((one.path, a), (other.path, b)))
+        tried += 1
+        if new := tuple(c for c in both if c.kind in _COARSE and c.key not in alone):
+            found.append(Meeting((a, b), new))
+    return Pair(one, other, tuple(found), tried)
+
+
+def _far(knob: Knob, value: float) -> float:
+    low, high = knob.range or (0.0, 1.0)
+    return abs(value - float(knob.value)) / (high - low)
+
+
 # --- Each param is walked in a process.
 
 
@@ -378,7 +444,7 @@ def walked(job: SweepJob, knob: Knob, seconds: float = _A_KNOB) -> Walk:
     stopped = walker.walk()
     turns = tuple(sorted(walker.turns, key=lambda turn: (turn.after, turn.before)))
     if turns and time.monotonic() < walker.until:
-        from aidl_lang.tools.ranges.telling import with_remedies
+        from aidl_lang.tools.ranges import with_remedies
 
         turns = tuple(with_remedies(source, knob, turns, other))
     tried = tuple(sorted(walker.looks))
@@ -402,37 +468,21 @@ def ranges(
     wanted = [knob for knob in knobs if has_way(knob)]
     if not wanted:
         return Ranges((), (), 0.0)
-    workers = Guarded(min(count(), len(wanted)), "aidl_lang.tools.ranges.walking")
-    crew: Crew[int, Walk | Pair] = Crew(workers)
     twos = list(combinations(wanted, 2)) if in_pairs else []
-    done: dict[int, Walk | Pair] = {}
-    try:
-        progress(0, len(wanted) + len(twos))
-        for number, knob in enumerate(wanted):
-            crew.give(number, _A_KNOB + job.seconds, walked, job, knob)
-        for number, two in enumerate(twos, len(wanted)):
-            crew.give(number, _A_KNOB + job.seconds, met, job, *two)
-        while crew and time.monotonic() < start + seconds:
-            checkpoint()
-            for number, found in crew.came(_PAUSE):
-                done[number] = _came(found, [*((knob,) for knob in wanted), *twos][number])
-                progress(len(done), len(wanted) + len(twos))
-    finally:
-        workers.close()
-    results = [done[number] for number in sorted(done)]
-    walks = tuple(each for each in results if isinstance(each, Walk))
-    pairs = tuple(each for each in results if isinstance(each, Pair))
-    left = tuple(knob for number, knob in enumerate(wanted) if number not in done)
+    courses = [*(_alone(job, knob) for knob in wanted), *(_both(job, *two) for two in twos)]
+    module, longest = "aidl_lang.tools.ranges.walking", _A_KNOB + job.seconds
+    done, _ = followed(module, courses, longest, progress, start + seconds)
+    walks = tuple(each for each in done if isinstance(each, Walk))
+    pairs = tuple(each for each in done if isinstance(each, Pair))
+    left = tuple(knob for knob in wanted if all(walk.knob is not knob for walk in walks))
     return Ranges(walks, left, time.monotonic() - start, pairs, len(twos) - len(pairs))
 
 
-def _came(found: Walk | Pair | Broke, knobs: tuple[Knob, ...]) -> Walk | Pair:
-    """Returns the result of a process, or how it ended."""
-    if isinstance(found, Walk):
-        return replace(found, knob=knobs[0])
-    if isinstance(found, Pair):
-        return found
-    if found.limit is None:
-        raise found.error
-    why = BROKEN[found.limit]
-    return Pair(*knobs, stopped=why) if len(knobs) == 2 else Walk(knobs[0], stopped=why)
+def _alone(job: SweepJob, knob: Knob) -> Course[Walk | Pair]:
+    found = yield walked, job, knob
+    return Walk(knob, stopped=BROKEN[found]) if isinstance(found, Limit) else replace(found, knob=knob)
+
+
+def _both(job: SweepJob, one: Knob, other: Knob) -> Course[Walk | Pair]:
+    found = yield met, job, one, other
+    return Pair(one, other, stopped=BROKEN[found]) if isinstance(found, Limit) else found

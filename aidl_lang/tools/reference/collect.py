@@ -225,7 +225,7 @@ def _sort(node: ast.Callable | ast.Let) -> str:
         case ast.ShapeDefinition():
             return "shape"
         case ast.ConstraintDefinition():
-            return "relation" if relates_boxes(node, library.load().callables) else "constraint"
+            return "relation" if relates_boxes(node) else "constraint"
         case ast.FunctionDefinition():
             return "shape" if made_shape(node) else "function"
         case ast.Structure():

@@ -4,7 +4,7 @@ constraint holds, and whether a measure is exact or a least one.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator
 
 from aidl_lang.checking import library
 from aidl_lang.checking.types import (
@@ -12,7 +12,6 @@ from aidl_lang.checking.types import (
     PEERS,
     PUBLIC,
     NumberType,
-    Signature,
     TextType,
     TruthType,
     parameter_type,
@@ -24,6 +23,7 @@ from aidl_lang.syntax import ast
 VALUE = "value"
 """The parameter that a measuring constraint sets: `distance(a, b, value)`."""
 
+_Constraints = tuple[ast.ConstraintDefinition, ...]
 _OPTIONS = (VALUE, "about", "axis", "margin", "inset", "by")
 """Parameters that are options even if they take a point or anything."""
 
@@ -130,7 +130,7 @@ def gathers(node: ast.Callable) -> bool:
     return kind is not None and PARAMETER_TYPES.get(fold(kind.text)) == PARAMETER_TYPES["list"]
 
 
-def held(node: ast.Callable, callables: Mapping[str, Sequence[Signature]]) -> str:
+def held(node: ast.Callable) -> str:
     """Returns in words what is held on the first try; "" for a definition that places nothing."""
     if not isinstance(node, ast.ConstraintDefinition):
         return ""
@@ -143,20 +143,16 @@ def held(node: ast.Callable, callables: Mapping[str, Sequence[Signature]]) -> st
         return f"one that is placed, else the last of `{peers[0]}`"
     if peers:
         return f"one that is placed, else `{peers[-1]}`" if len(peers) > 1 else ""
-    name = _held_parameter(node, callables, ())
+    name = _held_parameter(node, ())
     return "" if name is None else f"the last of `{name}`" if gathers(node) else f"`{name}`"
 
 
-def _held_parameter(
-    node: ast.ConstraintDefinition,
-    callables: Mapping[str, Sequence[Signature]],
-    around: tuple[ast.ConstraintDefinition, ...],
-) -> str | None:
+def _held_parameter(node: ast.ConstraintDefinition, around: _Constraints) -> str | None:
     """Returns the last thing a constraint takes; for one that only calls another, what that one holds."""
     call, related = _delegated(node), [p.name.text for p in things(node)]
-    inner = _called(call, node, callables) if call is not None else None
+    inner = _called(call, node) if call is not None else None
     if call is not None and inner is not None and inner not in around:
-        kept = _held_parameter(inner, callables, (*around, node))
+        kept = _held_parameter(inner, (*around, node))
         given = [call.receiver] if call.receiver is not None else []
         given += [a.value for a in call.arguments if a.name is None]
         by_name = dict(zip((p.name.text for p in inner.parameters), given, strict=False))
@@ -174,12 +170,10 @@ def _delegated(node: ast.ConstraintDefinition) -> ast.Call | None:
             return None
 
 
-def _called(
-    call: ast.Call, caller: ast.ConstraintDefinition, callables: Mapping[str, Sequence[Signature]]
-) -> ast.ConstraintDefinition | None:
+def _called(call: ast.Call, caller: ast.ConstraintDefinition) -> ast.ConstraintDefinition | None:
     """Returns the constraint that a call means: the first other one that has all parameters named in it."""
     named = {fold(a.name.text) for a in call.arguments if a.name is not None}
-    for signature in callables.get(call.callee.text, ()):
+    for signature in library.load().callables.get(call.callee.text, ()):
         node = signature.node
         meant = node is not caller and named <= signature.by_fold.keys()
         if meant and isinstance(node, ast.ConstraintDefinition) and not is_refusal(node):
@@ -194,21 +188,16 @@ def is_refusal(node: ast.Callable) -> bool:
     return isinstance(value, ast.Call) and value.callee.text == "refuse"
 
 
-def exactness(node: ast.Callable, callables: Mapping[str, Sequence[Signature]]) -> dict[str, str]:
+def exactness(node: ast.Callable) -> dict[str, str]:
     """Returns how a constraint meets each length and angle: `exactly`, `at least` or, by name, `at most`."""
     if not isinstance(node, ast.ConstraintDefinition):
         return {}
     measures = [p.name.text for p in node.parameters if isinstance(parameter_type(p), NumberType)]
-    found = {name: _exactness_of(name, node, callables, ()) for name in measures}
+    found = {name: _exactness_of(name, node, ()) for name in measures}
     return {name: word for name, word in found.items() if word}
 
 
-def _exactness_of(
-    name: str,
-    node: ast.ConstraintDefinition,
-    callables: Mapping[str, Sequence[Signature]],
-    around: tuple[ast.ConstraintDefinition, ...],
-) -> str:
+def _exactness_of(name: str, node: ast.ConstraintDefinition, around: _Constraints) -> str:
     if node in around:
         return ""
     aliases = {name}
@@ -218,10 +207,10 @@ def _exactness_of(
                 aliases.add(called.text)
             case ast.Comparison() if _mentions(item, aliases):
                 return "exactly" if "==" in item.operators else "at most" if "most" in name else "at least"
-            case ast.Call(arguments=arguments) if (inner := _called(item, node, callables)) is not None:
+            case ast.Call(arguments=arguments) if (inner := _called(item, node)) is not None:
                 for argument in arguments:
                     if argument.name is not None and _mentions(argument.value, aliases):
-                        return _exactness_of(argument.name.text, inner, callables, (*around, node))
+                        return _exactness_of(argument.name.text, inner, (*around, node))
             case _:
                 pass
     return ""
@@ -231,22 +220,18 @@ def _mentions(node: ast.Node, wanted: Iterable[str]) -> bool:
     return any(isinstance(n, ast.Name) and n.text in wanted for n in ast.walk(node))
 
 
-def relates_boxes(
-    node: ast.ConstraintDefinition,
-    callables: Mapping[str, Sequence[Signature]],
-    around: tuple[ast.ConstraintDefinition, ...] = (),
-) -> bool:
+def relates_boxes(node: ast.ConstraintDefinition, around: _Constraints = ()) -> bool:
     """True if a constraint, or one that it calls, reads the boxes of its arguments."""
     calls = [n for n in ast.walk(node.body) if isinstance(n, ast.Call)]
-    if _takes_box(node) or any(_reads_boxes(callables.get(call.callee.text, ())) for call in calls):
+    if _takes_box(node) or any(_reads_boxes(call.callee.text) for call in calls):
         return True
-    inner = [n for call in calls if (n := _called(call, node, callables)) is not None and n not in around]
-    return any(relates_boxes(n, callables, (*around, node)) for n in inner)
+    inner = [n for call in calls if (n := _called(call, node)) is not None and n not in around]
+    return any(relates_boxes(n, (*around, node)) for n in inner)
 
 
-def _reads_boxes(overloads: Sequence[Signature]) -> bool:
+def _reads_boxes(name: str) -> bool:
     """True for the name of functions of boxes."""
-    nodes = [signature.node for signature in overloads]
+    nodes = [signature.node for signature in library.load().callables.get(name, ())]
     return bool(nodes) and all(isinstance(n, ast.FunctionDefinition) and _takes_box(n) for n in nodes)
 
 

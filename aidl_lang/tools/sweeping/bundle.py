@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Iterable, Mapping
 from dataclasses import field, replace
-from functools import cache, cached_property
+from functools import cache
 from typing import TYPE_CHECKING, Any
 
 from aidl_lang.common.diagnostics import Diagnostic
@@ -43,14 +43,7 @@ class Bundle:
 
     @property
     def source(self) -> SourceFile:
-        """Returns the program as it is compiled."""
         return SourceFile(self.name, self.text)
-
-    @cached_property
-    def digest(self) -> str:
-        told = [f"{len(self.name)} {self.name} {len(self.text)} {self.text}", repr(self.settings)]
-        told += [f"{path} {digest_of(content)}" for path, content in sorted(self.files.items())]
-        return hashlib.sha256("\n".join(told).encode("utf-8", "surrogatepass")).hexdigest()
 
 
 def digest_of(content: Content) -> str:
@@ -58,25 +51,46 @@ def digest_of(content: Content) -> str:
     return content.value if isinstance(content, ReadFailure) else hashlib.sha256(content).hexdigest()
 
 
-class Gathering:
+class Carried:
+    """The files of a bundle; `missing` gathers what was asked for and is not among them."""
+
+    def __init__(self, files: Mapping[str, Content]) -> None:
+        self.files = dict(files)
+        self.missing: set[str] = set()
+
+    def read_bytes(self, path: str) -> bytes:
+        content = self._content(normalize(path))
+        if isinstance(content, ReadFailure):
+            raise FileError(path, content)
+        return content
+
+    def read(self, path: str) -> str:
+        try:
+            return self.read_bytes(path).decode("utf-8").replace("\r\n", "\n").replace("\r", "\n")
+        except UnicodeDecodeError:
+            raise FileError(path, ReadFailure.NOT_TEXT) from None
+
+    def _content(self, path: str) -> Content:
+        if path not in self.files:
+            self.missing.add(path)
+        return self.files.get(path, ReadFailure.MISSING)
+
+
+class Gathering(Carried):
     """The files of another world, each read once; `files` has those that were asked for."""
 
     def __init__(self, world: World) -> None:
+        super().__init__({})
         self._world = world
         self.reads = reads_of(world)
-        self.files: dict[str, Content] = {}
 
-    def read_bytes(self, path: str) -> bytes:
-        wanted = normalize(path)
-        if wanted not in self.files:
+    def _content(self, path: str) -> Content:
+        if path not in self.files:
             try:
-                self.files[wanted] = self._world.read_bytes(wanted)
+                self.files[path] = self._world.read_bytes(path)
             except FileError as reason:
-                self.files[wanted] = reason.reason
-        return _given(wanted, self.files[wanted])
-
-    def read(self, path: str) -> str:
-        return _text(path, self.read_bytes(path))
+                self.files[path] = reason.reason
+        return self.files[path]
 
     def gather(self, paths: Iterable[str]) -> None:
         """Reads more files, those that are there."""
@@ -85,37 +99,6 @@ class Gathering:
                 self.read_bytes(path)
             except FileError:
                 continue  # that it is missing is known now
-
-
-class Carried:
-    """The files of a bundle; `missing` gathers what was asked for and is not among them."""
-
-    def __init__(self, files: Mapping[str, Content]) -> None:
-        self._files = files
-        self.missing: set[str] = set()
-
-    def read_bytes(self, path: str) -> bytes:
-        wanted = normalize(path)
-        if wanted not in self._files:
-            self.missing.add(wanted)
-            raise FileError(path, ReadFailure.MISSING)
-        return _given(path, self._files[wanted])
-
-    def read(self, path: str) -> str:
-        return _text(path, self.read_bytes(path))
-
-
-def _given(path: str, content: Content) -> bytes:
-    if isinstance(content, ReadFailure):
-        raise FileError(path, content)
-    return content
-
-
-def _text(path: str, data: bytes) -> str:
-    try:
-        return data.decode("utf-8").replace("\r\n", "\n").replace("\r", "\n")
-    except UnicodeDecodeError:
-        raise FileError(path, ReadFailure.NOT_TEXT) from None
 
 
 # --- Diagnostics as they are passed between processes: without their sources.
@@ -154,7 +137,6 @@ BROKEN = {
 
 
 def fault(diagnostic: Diagnostic) -> Fault:
-    """Returns a diagnostic without its sources."""
     span = diagnostic.span
     if span is None:
         return Fault(diagnostic.code, diagnostic.message, diagnostic.label)

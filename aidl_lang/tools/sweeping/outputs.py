@@ -86,19 +86,38 @@ def said(fault: Fault) -> str:
     return " ".join(f"{fault.code}{place}: {fault.message}{label}".split())
 
 
+def _measure(name: str) -> Callable[[Row], Cell]:
+    return lambda row: row.measures.get(name)
+
+
+_RESULTS: Mapping[str, Callable[[Row], Cell]] = {
+    "status": lambda row: row.status,
+    "ok": lambda row: row.ok,
+    **{_DRAWN.get(name, name): _measure(name) for name in MEASURES},
+    "dof": lambda row: row.outcome.dof,
+    "asserts": lambda row: row.outcome.asserts,
+    "failed_asserts": lambda row: [said(each) for each in row.outcome.failed_asserts],
+    "changed": lambda row: [f"{c.path}: {c.written:.6g} → {c.solved:.6g}" for c in row.outcome.changed],
+    "errors": lambda row: len(row.outcome.errors),
+    "warnings": lambda row: len(row.outcome.faults) - len(row.outcome.errors),
+    "messages": lambda row: [said(each) for each in row.outcome.faults],
+    "files": lambda row: list(row.files),
+    "command": lambda row: row.command,
+    "seconds": lambda row: row.outcome.seconds,
+}
+
+
 class Columns:
     """Columns: number, other fields, params, results; `result_NAME` for one whose name a param has."""
 
     def __init__(self, plan: Plan, timings: bool = True) -> None:
         self._plan = plan
         self.given = ["n", *plan.labels, *plan.paths]
-        results = ["status", "ok", *(_DRAWN.get(name, name) for name in MEASURES), "dof", "asserts"]
-        results += ["failed_asserts", "changed", "errors", "warnings", "messages", "files", "command"]
-        if timings:
-            results.append("seconds")
-        taken = set(self.given)
-        self._results = [f"result_{name}" if name in taken else name for name in results]
-        self._timings = timings
+        self._results = {
+            f"result_{name}" if name in self.given else name: cell
+            for name, cell in _RESULTS.items()
+            if timings or name != "seconds"
+        }
 
     @property
     def names(self) -> list[str]:
@@ -110,24 +129,10 @@ class Columns:
         given: list[Cell] = [variant.number]
         given += [variant.labels.get(name) for name in self._plan.labels]
         given += [self._value(path, variant, outcome) for path in self._plan.paths]
-        warnings = [each for each in outcome.faults if not each.is_error]
-        results: list[Cell] = [
-            outcome.status,
-            outcome.ok,
-            *(outcome.measures.get(name) for name in MEASURES),
-            outcome.dof,
-            outcome.asserts,
-            [said(each) for each in outcome.failed_asserts],
-            [f"{c.path}: {c.written:.6g} → {c.solved:.6g}" for c in outcome.changed],
-            len(outcome.errors),
-            len(warnings),
-            [said(each) for each in outcome.faults],
-            list(row.files),
-            row.command,
-        ]
-        if self._timings:
-            results.append(outcome.seconds)
-        return [*given, *results]
+        return [*given, *(cell(row) for cell in self._results.values())]
+
+    def by_name(self, row: Row) -> dict[str, Cell]:
+        return dict(zip(self.names, self.cells(row), strict=True))
 
     def _value(self, path: str, variant: Variant, outcome: Outcome) -> Value | None:
         """Returns the value of a param: as it was set, or as written where the table leaves it out."""
@@ -164,10 +169,6 @@ def _differing(a: Outcome, b: Outcome) -> list[str]:
     return told + [f"no more: {said(f)}" for place, f in was.items() if place not in now]
 
 
-def as_mapping(names: Sequence[str], cells: Sequence[Cell]) -> Mapping[str, Cell]:
-    return dict(zip(names, cells, strict=True))
-
-
 ARROW_EXTRA = "parquet"
 
 
@@ -186,11 +187,7 @@ def _csv(cell: Cell) -> str:
 
 
 def to_json_lines(columns: Columns, rows: Sequence[Row]) -> bytes:
-    """Returns a table as JSON lines, one object a row."""
-    lines = (
-        json.dumps(as_mapping(columns.names, columns.cells(row)), ensure_ascii=False, allow_nan=False)
-        for row in rows
-    )
+    lines = (json.dumps(columns.by_name(row), ensure_ascii=False, allow_nan=False) for row in rows)
     return "".join(f"{line}\n" for line in lines).encode("utf-8", "backslashreplace")
 
 
@@ -208,11 +205,19 @@ def to_arrow(columns: Columns, rows: Sequence[Row]) -> pyarrow.Table:
     require("pyarrow", "a table of Arrow", ARROW_EXTRA)
     import pyarrow
 
+    kinds = {
+        float: pyarrow.float64(),
+        int: pyarrow.int64(),
+        bool: pyarrow.bool_(),
+        list: pyarrow.list_(pyarrow.string()),
+    }
     found = [columns.cells(row) for row in rows]
     data = {}
     for k, name in enumerate(columns.names):
         cells = [cells[k] for cells in found]
-        data[name] = pyarrow.array([_typed(cell, _kind(cells)) for cell in cells], _arrow(_kind(cells)))
+        if (kind := _kind(cells)) is str:
+            cells = [None if cell is None else _csv(cell) for cell in cells]
+        data[name] = pyarrow.array(cells, kinds.get(kind, pyarrow.string()))
     return pyarrow.table(data)
 
 
@@ -221,24 +226,6 @@ def _kind(cells: Sequence[Cell]) -> type:
     if kinds <= {int, float} and float in kinds:
         return float
     return kinds.pop() if len(kinds) == 1 else str
-
-
-def _typed(cell: Cell, kind: type) -> object:
-    if cell is None or kind is not str:
-        return cell
-    return shown(cell) if not isinstance(cell, list) else "; ".join(cell)
-
-
-def _arrow(kind: type) -> pyarrow.DataType:
-    import pyarrow
-
-    kinds: Mapping[type, Callable[[], pyarrow.DataType]] = {
-        float: pyarrow.float64,
-        int: pyarrow.int64,
-        bool: pyarrow.bool_,
-        list: lambda: pyarrow.list_(pyarrow.string()),
-    }
-    return kinds.get(kind, pyarrow.string)()
 
 
 TABLES: Mapping[str, Callable[[Columns, Sequence[Row]], bytes]] = {
@@ -412,17 +399,15 @@ class Drawings:
         """Names the drawings of all variants, numbering equal names. Raises AidlError if one was read."""
         self.renamed = 0
         self._patterns = outputs.patterns
-        self._names = [list(self._named(each, plan)) for each in outputs.patterns]
+        self._names: list[list[str]] = []
         self._written: dict[str, int] = {}
         self._reads = reads
-        for names in self._names:
+        for each in outputs.patterns:
+            plain = [each.named(variant) for variant in plan]
+            names = list(distinct(plain))
+            self.renamed += sum(name != before for name, before in zip(names, plain, strict=True))
             reads.require_unread(names)
-
-    def _named(self, each: Pattern, plan: Plan) -> Iterator[str]:
-        plain = [each.named(variant) for variant in plan]
-        for before, name in zip(plain, distinct(plain), strict=True):
-            self.renamed += name != before
-            yield name
+            self._names.append(names)
 
     def names(self, variant: Variant) -> list[str]:
         """Returns the names of a variant's drawings, one for each pattern."""

@@ -134,13 +134,15 @@ def spelled(knob: Knob | None, given: Value) -> Value:
 
 
 def _all_of(knob: Knob) -> Axis:
-    if knob.choices:
-        return Axis(knob.path, tuple(knob.choices))
-    if isinstance(knob.value, bool):
-        return Axis(knob.path, (False, True))
+    if choices := _choices(knob):
+        return Axis(knob.path, choices)
     if knob.low is not None and knob.high is not None and knob.step:
         return Axis(knob.path, tuple(_steps(knob, knob.low, knob.high, knob.step)))
     raise wrong(f"`{knob.path}` has no choices and no range with a step, so `*` says nothing")
+
+
+def _choices(knob: Knob) -> tuple[Value, ...]:
+    return knob.choices or ((False, True) if isinstance(knob.value, bool) else ())
 
 
 def _listed(knob: Knob, written: str) -> list[str]:
@@ -163,10 +165,8 @@ def _ranged(knob: Knob, written: str, *, is_drawn: bool) -> Axis:
         raise wrong(f"`{written}` is no range for `{knob.path}`")
     low, high = (_measure(knob, found[end]) for end in ("low", "high"))
     if low > high:
-        raise wrong(
-            f"the range `{written}` of `{knob.path}` runs backwards",
-            f"write `{found['high']}..{found['low']}`",
-        )
+        turned = f"write `{found['high']}..{found['low']}`"
+        raise wrong(f"the range `{written}` of `{knob.path}` runs backwards", turned)
     if is_drawn:
         step = _measure(knob, found["step"]) if found["step"] else knob.step
         return Axis(knob.path, (), Span(low, high, step))
@@ -174,10 +174,8 @@ def _ranged(knob: Knob, written: str, *, is_drawn: bool) -> Axis:
         return Axis(knob.path, tuple(_evenly(low, high, int(found["count"]), written)))
     step = _measure(knob, found["step"]) if found["step"] else knob.step
     if step is None:
-        raise wrong(
-            f"`{written}` does not say how many values `{knob.path}` takes",
-            f"write `{written.strip()}/8` for eight of them, or `{written.strip()} step 5`",
-        )
+        hint = f"write `{written.strip()}/8` for eight of them, or `{written.strip()} step 5`"
+        raise wrong(f"`{written}` does not say how many values `{knob.path}` takes", hint)
     return Axis(knob.path, tuple(_steps(knob, low, high, step)))
 
 
@@ -209,7 +207,7 @@ def _evenly(low: float, high: float, count: int, written: str) -> list[Value]:
 def _steps(knob: Knob, low: float, high: float, step: float) -> list[Value]:
     if not step > 0:
         raise wrong(f"the step of `{knob.path}` is not above 0")
-    count = math.floor((high - low) / step * (1 + 1e-12) + _SLACK)
+    count = Span(low, high, step).steps
     if count >= MOST:
         raise wrong(f"`{knob.path}` would take {count + 1} values; a sweep has 1 to {MOST}")
     return [_short(low + step * k) for k in range(count + 1)]
@@ -319,7 +317,7 @@ def _draw(axis: Axis, chance: random.Random) -> Value:
     if span is None:
         return axis.values[chance.randrange(len(axis.values))]
     if span.step:
-        return float(f"{span.low + span.step * chance.randint(0, span.steps):.12g}")
+        return _short(span.low + span.step * chance.randint(0, span.steps))
     return float(f"{chance.uniform(span.low, span.high):.9g}")
 
 
@@ -332,10 +330,8 @@ def planned(
     """Returns the plan of a sweep. Raises AidlError if there is nothing to vary, or too much."""
     if drawn is not None:
         if rows is not None:
-            raise wrong(
-                "a table says all variants, so none can be drawn at random",
-                "leave out the table, or `--random`",
-            )
+            hint = "leave out the table, or `--random`"
+            raise wrong("a table says all variants, so none can be drawn at random", hint)
         axes = [*axes, *_free(knobs, {axis.path for axis in axes})]
     plan = Plan({knob.path: knob for knob in knobs}, tuple(axes), rows, drawn)
     seen: set[str] = set()
@@ -357,10 +353,8 @@ def _free(knobs: Sequence[Knob], set_already: set[str]) -> Iterator[Axis]:
     for knob in knobs:
         if knob.path in set_already:
             continue
-        if knob.choices:
-            yield Axis(knob.path, tuple(knob.choices))
-        elif isinstance(knob.value, bool):
-            yield Axis(knob.path, (False, True))
+        if choices := _choices(knob):
+            yield Axis(knob.path, choices)
         elif knob.low is not None and knob.high is not None:
             yield Axis(knob.path, (), Span(knob.low, knob.high, knob.step))
 
@@ -381,10 +375,8 @@ def read_table(path: Path, knobs: Sequence[Knob], reads: Reads) -> Rows:
     except StopIteration:
         raise _wrong(f"`{path}` is empty", "its first line names the params") from None
     if len(head) == 1 and (others := [name for mark, name in _SEPARATORS.items() if mark in head[0]]):
-        raise _wrong(
-            f"the cells of `{path}` are separated by {others[0]}, not by commas",
-            "save it with commas as separators, and numbers with points: `12.5`",
-        )
+        hint = "save it with commas as separators, and numbers with points: `12.5`"
+        raise _wrong(f"the cells of `{path}` are separated by {others[0]}, not by commas", hint)
     columns = _columns(path, head, knobs)
     params = [(k, knob) for k, knob in enumerate(columns) if knob is not None]
     labels = [(k, name.strip()) for k, name in enumerate(head) if columns[k] is None]
@@ -409,7 +401,7 @@ def read_table(path: Path, knobs: Sequence[Knob], reads: Reads) -> Rows:
     )
 
 
-def _cells(path: Path, reads: Reads):  # type: ignore[no-untyped-def]
+def _cells(path: Path, reads: Reads) -> Iterator[tuple[int, list[str]]]:
     try:
         text = reads.contents(path, _MOST_BYTES).decode("utf-8-sig")
     except FileNotFoundError:
@@ -420,14 +412,11 @@ def _cells(path: Path, reads: Reads):  # type: ignore[no-untyped-def]
         raise _wrong(f"`{path}` is not UTF-8 text (byte {error.start})", "save it as CSV in UTF-8") from None
     csv.field_size_limit(_LONGEST_CELL)
     reader = csv.reader(text.splitlines(keepends=True), strict=True)
-    while True:
-        try:
-            row = next(reader)
-        except StopIteration:
-            return
-        except csv.Error as error:
-            raise _wrong(f"line {reader.line_num} of `{path}` is no CSV: {error}") from None
-        yield reader.line_num, row
+    try:
+        for row in reader:
+            yield reader.line_num, row
+    except csv.Error as error:
+        raise _wrong(f"line {reader.line_num} of `{path}` is no CSV: {error}") from None
 
 
 def _columns(path: Path, head: Sequence[str], knobs: Sequence[Knob]) -> list[Knob | None]:

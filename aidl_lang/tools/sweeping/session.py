@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import shlex
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from dataclasses import field, replace
 from pathlib import Path, PurePath
 from typing import TYPE_CHECKING, Any
@@ -17,7 +17,8 @@ from aidl_lang.common.processes import Engine, Guarded, count
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
 from aidl_lang.common.source import SourceFile
-from aidl_lang.common.world import World
+from aidl_lang.common.world import MemoryWorld, World
+from aidl_lang.export.job import Options, require
 from aidl_lang.pipeline import Settings
 from aidl_lang.tools.sweeping import keeping
 from aidl_lang.tools.sweeping.bundle import (
@@ -33,6 +34,7 @@ from aidl_lang.tools.sweeping.bundle import (
 from aidl_lang.tools.sweeping.keeping import Store
 from aidl_lang.tools.sweeping.outputs import TABLES, Columns, Drawings, Outputs, Row, in_order, turns, write
 from aidl_lang.tools.sweeping.outputs import outputs as sorted_outputs
+from aidl_lang.tools.sweeping.outputs import to_arrow as as_arrow
 from aidl_lang.tools.sweeping.plan import (
     Axis,
     Plan,
@@ -44,14 +46,13 @@ from aidl_lang.tools.sweeping.plan import (
     planned,
     read_table,
     refused,
+    shown,
     spelled,
 )
 from aidl_lang.tools.sweeping.working import Making, variant
 
 if TYPE_CHECKING:
     import pyarrow
-
-    from aidl_lang.export.job import Options
 
 
 # --- How a sweep begins on the command line and in Python: the program, and the engine by name.
@@ -65,8 +66,6 @@ def opened(
     source: SourceFile, world: World | None, settings: pipeline.Settings
 ) -> tuple[Bundle, Gathering, tuple[Knob, ...]]:
     """Returns a program as it travels, files it may ask for, its params. Raises AidlError if wrong."""
-    from aidl_lang.common.world import MemoryWorld
-
     gathering = Gathering(world or MemoryWorld({}))
     knobs, found = pipeline.knobs(source, gathering, settings)
     if has_errors(found):
@@ -121,8 +120,6 @@ def reproducing(
 
 
 def _written(given: Value) -> str:
-    from aidl_lang.tools.sweeping.plan import shown
-
     return repr(given) if isinstance(given, float) and not given.is_integer() else shown(given)
 
 
@@ -154,11 +151,8 @@ _Done = tuple[Variant, Outcome, bool]
 
 
 def _broken(broke: Broke) -> Outcome:
-    """Returns the outcome of a variant that met a limit, or a bug."""
-    if broke.limit is not None:
-        return Outcome("broken", False, (Fault("E0603", BROKEN[broke.limit]),))
-    message = f"compiling ended in {type(broke.error).__name__}: {str(broke.error)[:200]}"
-    return Outcome("broken", False, (Fault("E0603", message),))
+    why = f"compiling ended in {type(broke.error).__name__}: {str(broke.error)[:200]}"
+    return Outcome("broken", False, (Fault("E0603", why if broke.limit is None else BROKEN[broke.limit]),))
 
 
 PICTURE = 320
@@ -384,7 +378,7 @@ class Sweep:
     def __init__(self, job: Job, engine: tuple[str, int | None]) -> None:
         self._job, self._engine = job, engine
         self._session: Session | None = None
-        self._running: Iterator[Row] | None = None
+        self._running = self._rows()
 
     @classmethod
     def begun(
@@ -421,26 +415,15 @@ class Sweep:
 
     def __iter__(self) -> Iterator[Row]:
         place = 0
-        while True:
-            known = self._session.rows if self._session is not None else []
-            if place < len(known):
-                yield known[place]
-                place += 1
-            elif not self._step():
-                return
+        while place < len(self._known) or next(self._running, None) is not None:
+            yield self._known[place]
+            place += 1
 
-    def _step(self) -> bool:
-        """Has one more result come in; False if there is none."""
-        if self._running is None:
-            if self._session is not None:
-                return False
-            self._running = self._rows()
-        if next(self._running, None) is None:
-            self._running = None
-            return False
-        return True
+    @property
+    def _known(self) -> list[Row]:
+        return self._session.rows if self._session is not None else []
 
-    def _rows(self) -> Iterator[Row]:
+    def _rows(self) -> Generator[Row, None, None]:
         workers: Engine = engine(*self._engine, len(self._job.plan), self._job.outputs.names)
         self._session = Session(self._job, workers)
         try:
@@ -450,9 +433,8 @@ class Sweep:
 
     def close(self) -> None:
         """Gives up what is not done. With outputs or a cache, what is done is kept."""
-        if self._running is not None:
-            self._running.close()  # type: ignore[attr-defined]
-            self._running = None
+        if self._session is not None:
+            self._running.close()
 
     def __enter__(self) -> Sweep:
         return self
@@ -477,20 +459,15 @@ class Sweep:
 
     def to_arrow(self) -> pyarrow.Table:
         """Returns the results as a table of Arrow. Raises AidlError without the package `pyarrow`."""
-        from aidl_lang.tools.sweeping.outputs import to_arrow
-
-        return to_arrow(Columns(self._job.plan, self._job.timings), self.results)
+        return as_arrow(Columns(self._job.plan, self._job.timings), self.results)
 
     def to_pandas(self) -> Any:
         """Returns the results as a data frame of pandas. Raises AidlError without the packages."""
-        from aidl_lang.export.job import require
-
         require("pandas", "a data frame", "parquet")
         return self.to_arrow().to_pandas()
 
     def __repr__(self) -> str:
-        done = len(self._session.rows) if self._session is not None else 0
-        return f"<aidl_lang.Sweep {done} of {len(self)} variants>"
+        return f"<aidl_lang.Sweep {len(self._known)} of {len(self)} variants>"
 
 
 def _axis(name: str, values: object, knobs: Sequence[Knob], *, is_drawn: bool) -> Axis:

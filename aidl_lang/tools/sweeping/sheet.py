@@ -11,14 +11,14 @@ from collections.abc import Sequence
 from functools import lru_cache
 from hashlib import sha256
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from aidl_lang.common.materials import PAPERS
 from aidl_lang.common.prose import counted
 from aidl_lang.common.records import record
 from aidl_lang.common.render import escape
 from aidl_lang.export.pdf import FAMILY, POINTS_PER_MM, font_file
-from aidl_lang.tools.sweeping.outputs import Columns, Row, as_mapping
+from aidl_lang.tools.sweeping.outputs import Columns, Row
 from aidl_lang.tools.sweeping.plan import shown
 from aidl_lang.version import __version__
 
@@ -40,20 +40,10 @@ _COLUMNS = 4
 _INK, _GREY, _RED, _PALE = "#1c2330", "#8a93a3", "#b3261e", "#fdf1f0"
 
 
-class Painter(Protocol):
-    """What a sheet is painted on."""
-
-    def box(self, x: float, y: float, width: float, height: float, fill: str, line: str) -> None: ...
-
-    def text(self, x: float, y: float, size: float, colour: str, text: str) -> None:
-        """Paints a line of text whose baseline begins at a point."""
-        ...
-
-    def length(self, text: str, size: float) -> float: ...
-
-    def picture(self, x: float, y: float, width: float, height: float, png: bytes) -> None:
-        """Paints a picture as large as fits into a box, in its middle."""
-        ...
+Painter: TypeAlias = "_Paper | _Pixels"
+"""What a sheet is painted on: boxes, lines of text whose baseline begins at a point, and pictures as large as
+fits into a box, in its middle.
+"""
 
 
 @record()
@@ -81,7 +71,6 @@ class Grid:
 
 
 def on_paper(width: float, height: float) -> Grid:
-    """Returns the grid for a page of paper."""
     side = (width - 2 * MARGIN + _GAP) / _COLUMNS - _GAP
     cell = Grid(_COLUMNS, 1, side).cell
     return Grid(_COLUMNS, max(1, math.floor((height - 2 * MARGIN - _HEAD) / cell)), side)
@@ -177,9 +166,8 @@ def page(title: str, columns: Columns, rows: Sequence[Row]) -> bytes:
 
 
 def _entry(columns: Columns, row: Row) -> dict[str, Any]:
-    cells = dict(as_mapping(columns.names, columns.cells(row)))
     return {
-        "cells": cells,
+        "cells": columns.by_name(row),
         "ok": row.ok,
         "message": row.message,
         "picture": b64encode(row.outcome.picture).decode(),
@@ -259,7 +247,6 @@ _LARGEST = 60_000_000
 
 
 def png(title: str, rows: Sequence[Row]) -> bytes:
-    """Returns the sheet."""
     from PIL import Image
 
     grid = in_one(max(1, len(rows)), _SIDE)

@@ -7,6 +7,7 @@ from __future__ import annotations
 import time
 from collections.abc import Mapping
 from dataclasses import replace
+from functools import lru_cache
 
 from aidl_lang import pipeline
 from aidl_lang.checking import library
@@ -42,43 +43,28 @@ class Making:
     drafted: bool = False
 
 
-@record(frozen=False)
-class _Kept:
-    digest: str
-    world: Carried
-    front: Front
-    memory: Memory
-
-
-_kept: list[_Kept] = []
-"""The program that this process has checked already: it is the same over and over."""
-
-
 def variant(bundle: Bundle, params: Mapping[str, float | str | bool], making: Making) -> Outcome:
     """Returns what comes of a program with some params set."""
     start = time.perf_counter()
-    kept = _of(bundle)
-    kept.world.missing.clear()
+    world, front, memory = _kept(bundle)
+    world.missing.clear()
     try:
-        compiled = pipeline.compile(
-            bundle.source, kept.world, params, bundle.settings, (), kept.memory, kept.front
-        )
+        compiled = pipeline.compile(bundle.source, world, params, bundle.settings, (), memory, front)
     except BaseException:
-        _kept.clear()  # it may hold half of a solution
+        _kept.cache_clear()  # it may hold half of a solution
         raise
     outcome = _outcome(compiled, making)
-    if missing := tuple(sorted(kept.world.missing)):
-        _kept.clear()  # it was checked without these
+    if missing := tuple(sorted(world.missing)):
+        _kept.cache_clear()  # it was checked without these
         return Outcome("wrong", False, missing=missing)
     return replace(outcome, seconds=round(time.perf_counter() - start, 4))
 
 
-def _of(bundle: Bundle) -> _Kept:
-    if not _kept or _kept[0].digest != bundle.digest:
-        world = Carried(bundle.files)
-        front = pipeline.front(bundle.source, world, bundle.settings)
-        _kept[:] = [_Kept(bundle.digest, world, front, Memory())]
-    return _kept[0]
+@lru_cache(maxsize=1)
+def _kept(bundle: Bundle) -> tuple[Carried, Front, Memory]:
+    """Returns what this process has of a program already: it is the same over and over."""
+    world = Carried(bundle.files)
+    return world, pipeline.front(bundle.source, world, bundle.settings), Memory()
 
 
 def _outcome(compiled: Compiled, making: Making) -> Outcome:

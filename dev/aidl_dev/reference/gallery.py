@@ -6,7 +6,7 @@ from pathlib import Path
 
 from aidl_dev.reference.llms import headline
 from aidl_dev.reference.pages import page_of
-from aidl_lang.tools.reference.pages import picture_of
+from aidl_lang.tools.reference import picture_of
 
 FOLDER = "examples/gallery"
 PAGE = "docs/gallery.md"

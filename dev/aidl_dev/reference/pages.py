@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from aidl_lang.common.prose import ticked
+from aidl_lang.tools.reference import entry_blocks, exactness_of, held_of, parts_of, picture
 from aidl_lang.tools.reference.collect import Entry, Reference, Topic
-from aidl_lang.tools.reference.pages import entry_blocks, exactness_of, held_of, parts_of, picture
 
 MARK = "<!-- Made from the library by `make reference`. -->"
 """The last line of a generated page."""

@@ -12,9 +12,8 @@ from aidl_lang.common.source import SourceFile
 from aidl_lang.common.world import World
 from aidl_lang.pipeline import Compiled, Settings, front
 from aidl_lang.tools.llm.intent.changes import Changes, Fate, compare, strength
-from aidl_lang.tools.llm.intent.inventory import Inventory, Item, Kind, Path, names_in, unnumbered
+from aidl_lang.tools.llm.intent.inventory import Inventory, Item, Kind, Path, inventory, names_in, unnumbered
 from aidl_lang.tools.llm.intent.placing import UNTRIED, Finding, Prober, State, dotted, new_errors, stands
-from aidl_lang.tools.llm.intent.taking import inventory
 
 # --- A loss of a conversation.
 
@@ -200,7 +199,7 @@ class Ledger:
     def note(self, source: SourceFile, compiled: Compiled | None) -> None:
         """Notes a program, and its outcome (None if it was not compiled)."""
         here = self.inventory(source, compiled)
-        prober = self._prober(source, _PROBES)
+        prober = Prober(self._world, self._settings, _PROBES, self._clashed)
         self._known = tuple(_probed(loss, c, prober, compiled) for loss, c in self.losses(here, compiled))
         self._text = source.text
         accepted = {k.item for k in self._known if not _counts(k) and k.finding.state is not State.UNTRIED}
@@ -219,11 +218,8 @@ class Ledger:
         """
         settled = (State.IMPLIED, State.CONFLICTS, State.MENDED)
         known = self._known if source.text == self._text else ()
-        prober = self._prober(source, _RESTORING)
+        prober = Prober(self._world, self._settings, _RESTORING, self._clashed)
         return _Restoring(self, prober, source).run({k.item for k in known if k.finding.state in settled})
-
-    def _prober(self, source: SourceFile, most: int) -> Prober:
-        return Prober(source.name, self._world, self._settings, most, self._clashed)
 
     def inventory(self, source: SourceFile, compiled: Compiled | None) -> Inventory:
         """Returns the intents of a program."""
@@ -242,7 +238,9 @@ class Ledger:
         heirs = {item: heir for _, last in self._noted for item, heir in last.items()}
         unread = compiled is None or any(d.code.startswith(_UNREAD) for d in compiled.diagnostics)
         text = _squeezed(here.source.text) if unread else ""
-        twice = {_lesser(item, heir) for item in items if (heir := heirs[item]) in items and heir is not None}
+        # of a lost statement and its lost replacement the older is left out, or a wish
+        both = ((item, heir) for item in items if (heir := heirs[item]) is not None and heir in items)
+        twice = {heir if strength(heir) < strength(item) else item for item, heir in both}
         for loss, changes in reports:
             if loss.item not in twice and not (unread and _mark(loss.item) in text):
                 yield loss, changes
@@ -289,11 +287,6 @@ def _count(inventory: Inventory, item: Item | None) -> int:
     return inventory.counts[unnumbered(item.thing)] if item is not None else 0
 
 
-def _lesser(item: Item, heir: Item) -> Item:
-    """Returns which of a lost statement and its lost replacement to leave out: the older, or a wish."""
-    return heir if strength(heir) < strength(item) else item
-
-
 def _is_missing(item: Item, fate: Fate, now: Item | None) -> bool:
     """True for a loss to report or try, as a rewritten statement may be; what diagnostics offer is none."""
     match fate:
@@ -324,8 +317,8 @@ def _probed(loss: Loss, changes: Changes, prober: Prober, base: Compiled | None)
     """Returns a loss with the result of putting it back, unless it may have been replaced."""
     if loss.kind is Kind.PARAM or not _has_room(loss, changes):
         return loss
-    trial = prober.tried(loss.item, changes, base, is_first=bool(loss.dependents))
-    return replace(loss, finding=trial.finding)
+    finding, _ = prober.tried(loss.item, changes, base, is_first=bool(loss.dependents))
+    return replace(loss, finding=finding)
 
 
 def _squeezed(text: str) -> str:
@@ -334,10 +327,9 @@ def _squeezed(text: str) -> str:
 
 
 def _mark(item: Item) -> str:
-    node = item.node
     if item.kind is Kind.STRUCTURE:
         return "".join(item.span.text.split("{")[0].split())
-    return _squeezed(node.span.text)
+    return _squeezed(item.node.span.text)
 
 
 class _Restoring:
@@ -362,10 +354,10 @@ class _Restoring:
 
     def _put(self, item: Item, inventory: Inventory, is_first: bool = False) -> bool:
         """Puts back an item; returns False if that fails."""
-        trial = self.prober.tried(item, compare(inventory, self.here), self.base, is_first)
-        if trial.compiled is None or trial.finding.state is not State.FITS:
+        finding, tried = self.prober.tried(item, compare(inventory, self.here), self.base, is_first)
+        if tried is None or finding.state is not State.FITS:
             return False
-        self.source, self.base = trial.source, trial.compiled
+        self.source, self.base = tried
         self.here = self.ledger.inventory(self.source, self.base)
         return True
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import replace
 from enum import StrEnum
 
@@ -78,36 +78,29 @@ class _Matching:
         name = item.thing[len(item.home) :]
         candidates = self._free(item, self.by_name.get(name, ()))
         if item.kind is Kind.GEOMETRY:
-            candidates = (o for o in candidates if o.word == item.word and o.shape == self._shape(item))
-        return next(iter(candidates), None)
+            wanted = shape(translated(item.key, self.found))
+            candidates = (o for o in candidates if o.word == item.word and o.shape == wanted)
+        return next(candidates, None)
 
     def _renamed(self, item: Item) -> Item | None:
         """Returns the thing with like content under another name in the same structure."""
         home = self._home(item)
         siblings = self._free(item, self.by_home.get(home, ()) if home is not None else ())
-        new = [o for o in siblings if o.word == item.word and not self._has_counterpart(o, item.home)]
+        # none that has its name from a thing of the earlier program
+        fresh = (o for o in siblings if (*item.home, *o.thing[len(o.home) :]) not in self.before.things)
+        new = [o for o in fresh if o.word == item.word]
         if item.kind is Kind.STRUCTURE:
             likely = ((self._likeness(item, other), other) for other in new[:_MOST])
             share, best = max(likely, key=lambda each: each[0], default=(0.0, None))
             return best if share >= _ALIKE else None
         key = translated(item.key, self.found)
-        gone = [o for o in self._unfound(item.home) if o.word == item.word]
+        here = (i for i in self.before.things.values() if i.home == item.home and i.kind is Kind.GEOMETRY)
+        gone = [i for i in here if self._in_place(i) is None and i.word == item.word]
         equal = next((o for o in new if o.key == key), None)
         return equal or (new[0] if len(new) == len(gone) == 1 else None)
 
-    def _free(self, item: Item, others: Iterable[Item]) -> Iterable[Item]:
+    def _free(self, item: Item, others: Iterable[Item]) -> Iterator[Item]:
         return (o for o in others if o.thing not in self.taken and o.kind is item.kind)
-
-    def _has_counterpart(self, other: Item, home: Path) -> bool:
-        """True if a thing of the later program has its name from one of the earlier."""
-        return (*home, *other.thing[len(other.home) :]) in self.before.things
-
-    def _unfound(self, home: Path) -> Iterable[Item]:
-        geometry = (i for i in self.before.things.values() if i.home == home and i.kind is Kind.GEOMETRY)
-        return (i for i in geometry if self._in_place(i) is None)
-
-    def _shape(self, item: Item) -> object:
-        return shape(translated(item.key, self.found))
 
     def _likeness(self, item: Item, other: Item) -> float:
         """Returns the common share of two structures' contents, from 0 to 1."""
@@ -117,14 +110,8 @@ class _Matching:
 
 def _root(inventory: Inventory) -> Item | None:
     """Returns the structure that is drawn: the last outermost one that is no template."""
-    return next(
-        (
-            i
-            for i in reversed(inventory.items)
-            if i.kind is Kind.STRUCTURE and not i.home and getattr(i.node, "parameters", None) is None
-        ),
-        None,
-    )
+    outermost = (i for i in reversed(inventory.items) if i.kind is Kind.STRUCTURE and not i.home)
+    return next((i for i in outermost if getattr(i.node, "parameters", None) is None), None)
 
 
 def _contents(inventory: Inventory) -> dict[Path, Counter[object]]:

@@ -7,6 +7,7 @@ from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from enum import StrEnum
+from itertools import takewhile
 
 from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.records import record
@@ -23,17 +24,8 @@ from aidl_lang.tools.llm.intent.inventory import CONSTRAIN, Inventory, Item, Key
 _INDENT = "    "
 
 
-@record()
-class PutBack:
-    """The text with something restored, which stands at `start:end`."""
-
-    text: str
-    start: int
-    end: int
-
-
-def put_back(item: Item, changes: Changes) -> PutBack | None:
-    """Returns the later program with a lost item; None if it has no place for it any more."""
+def put_back(item: Item, changes: Changes) -> Span | None:
+    """Returns the place of a lost item in the later program with it; None if there is none any more."""
     if isinstance(item.node, ast.Placement | ast.Argument):
         return _turned(item, changes)
     home = changes.paths.get(item.home, item.home)
@@ -45,8 +37,7 @@ def put_back(item: Item, changes: Changes) -> PutBack | None:
     if fate is Fate.WEAKENED and now is not None and now.wish:
         is_bare = any(step.key == CONSTRAIN for step in now.steps)
         words = words if is_bare else f"constrain {words}"
-        text = now.span.source.text
-        return _inserted(text[: now.span.start], words, text[now.span.end :], words)
+        return _put(now.span, words, words)
     body, rest = _found(body, item.steps, changes)
     if item.kind in (Kind.STRUCTURE, Kind.GEOMETRY, Kind.PARAM):
         return _after_sibling(item, changes, body, _wrapped(words, rest))
@@ -98,10 +89,8 @@ def _new_names(item: Item, changes: Changes, home: Path) -> Iterator[tuple[ast.N
 
 def _seen_from(path: Path, home: Path) -> str:
     """Returns the shortest way to refer to a thing in a structure."""
-    common = 0
-    while common < min(len(path) - 1, len(home)) and path[common] == home[common]:
-        common += 1
-    return dotted(path[common:])
+    common = takewhile(lambda pair: pair[0] == pair[1], zip(path[:-1], home, strict=False))
+    return dotted(path[len(list(common)) :])
 
 
 def dotted(path: Path) -> str:
@@ -141,23 +130,26 @@ def _wrapped(text: str, steps: Sequence[Step]) -> str:
     return text
 
 
-def _at_end(body: ast.Block, words: str) -> PutBack:
+def _at_end(body: ast.Block, words: str) -> Span:
     """Inserts before the brace that ends a block, on a line of its own if the brace has one."""
-    text, brace = body.span.source.text, body.span.end - 1
+    source, text, brace = body.span.source, body.span.source.text, body.span.end - 1
     line = text.rfind("\n", 0, brace) + 1
     margin = text[line:brace]
     if margin.strip() or line <= body.span.start:
-        before = text[:brace].rstrip(" ")
-        return _inserted(before, f"; {words} " if body.statements else f" {words} ", text[brace:], words)
-    return _inserted(text[:line], f"{margin}{_INDENT}{words}\n", text[line:], words)
+        blank = Span(source, len(text[:brace].rstrip(" ")), brace)
+        return _put(blank, f"; {words} " if body.statements else f" {words} ", words)
+    return _put(Span(source, line, line), f"{margin}{_INDENT}{words}\n", words)
 
 
-def _inserted(before: str, added: str, after: str, words: str) -> PutBack:
-    start = len(before) + added.index(words)
-    return PutBack(before + added + after, start, start + len(words))
+def _put(span: Span, added: str, words: str) -> Span:
+    """Returns the place of words in a program with what is added in place of a span."""
+    text = span.source.text
+    changed = SourceFile(span.source.name, text[: span.start] + added + text[span.end :])
+    start = span.start + added.index(words)
+    return Span(changed, start, start + len(words))
 
 
-def _after_sibling(item: Item, changes: Changes, body: ast.Block, words: str) -> PutBack:
+def _after_sibling(item: Item, changes: Changes, body: ast.Block, words: str) -> Span:
     """Inserts after the nearest thing that stood above it and still exists, else at a block's beginning."""
     above = 0
     for other in changes.before.items:
@@ -166,50 +158,43 @@ def _after_sibling(item: Item, changes: Changes, body: ast.Block, words: str) ->
         now = changes.fates[other][1]
         if now is not None and now.node in body.statements:
             above = max(above, now.span.end)
-    text = body.span.source.text
+    source, text = body.span.source, body.span.source.text
     at = above or body.span.start + 1
     end = text.find("\n", at)
     rest = text[at:end].strip()
     if end < 0 or (rest and not rest.startswith("//")):
-        return _inserted(text[:at], f" {words} ", text[at:], words)
+        return _put(Span(source, at, at), f" {words} ", words)
     first = body.statements[0].span.start if body.statements else body.span.start
     line = text.rfind("\n", 0, first) + 1
     margin = text[line:first] if not text[line:first].strip() else _INDENT
-    return _inserted(text[:end], f"\n{margin}{words}", text[end:], words)
+    return _put(Span(source, end, end), f"\n{margin}{words}", words)
 
 
-def _turned(item: Item, changes: Changes) -> PutBack | None:
+def _turned(item: Item, changes: Changes) -> Span | None:
     path = changes.paths.get(item.thing)
     owner = changes.after.things[path].node if path is not None else None
     if not isinstance(owner, ast.Structure | ast.Assign):
         return None
     text = owner.span.source.text
-    level = _level(item, owner, changes)
-    if level is not None:
-        words = item.text.split(" ", 1)[1]
-        return _inserted(text[: level.span.start], words, text[level.span.end :], words)
     if isinstance(item.node, ast.Argument):
         if not isinstance(owner, ast.Assign) or not isinstance(owner.value, ast.Call):
             return None
+        given, names = owner.value.arguments, changes.after.resolution.canonical
+        named = (a.value for a in given if a.name and names.get(a.name, a.name.text) == item.word)
+        level = next(named, None)
         at = owner.value.span.end - 1
-        comma = ", " if owner.value.arguments and not text[:at].rstrip().endswith(",") else ""
-        return _inserted(text[:at], f"{comma}{item.text}", text[at:], item.text)
-    if isinstance(owner, ast.Assign):
-        return _inserted(text[: owner.span.end], f" {item.text}", text[owner.span.end :], item.text)
-    at = owner.body.span.start
-    space = "" if text[at - 1].isspace() else " "
-    return _inserted(text[:at], f"{space}{item.text} ", text[at:], item.text)
-
-
-def _level(item: Item, owner: ast.Structure | ast.Assign, changes: Changes) -> ast.Expression | None:
-    """Returns the expression at the place of the rotation."""
-    if isinstance(item.node, ast.Placement):
-        return owner.placement.rotated if owner.placement is not None else None
-    if not isinstance(owner, ast.Assign) or not isinstance(owner.value, ast.Call):
-        return None
-    names = changes.after.resolution.canonical
-    named = (a for a in owner.value.arguments if a.name is not None)
-    return next((a.value for a in named if a.name and names.get(a.name, a.name.text) == item.word), None)
+        added = f", {item.text}" if given and not text[:at].rstrip().endswith(",") else item.text
+    else:
+        level = owner.placement.rotated if owner.placement is not None else None
+        if isinstance(owner, ast.Assign):
+            at, added = owner.span.end, f" {item.text}"
+        else:
+            at = owner.body.span.start
+            added = f"{'' if text[at - 1].isspace() else ' '}{item.text} "
+    if level is not None:
+        words = item.text.split(" ", 1)[1]
+        return _put(level.span, words, words)
+    return _put(Span(owner.span.source, at, at), added, item.text)
 
 
 # --- Tries whether losses still fit: puts each back, and compiles the program.
@@ -251,23 +236,12 @@ class Finding:
 UNTRIED = Finding(State.UNTRIED)
 
 
-@record()
-class Trial:
-    """A program with something put back, compiled."""
-
-    finding: Finding
-    source: SourceFile
-    compiled: Compiled | None = None
-
-
 class Prober:
     """Tries losses in one program, a limited number and time; items of `clashed` were in a conflict."""
 
-    def __init__(
-        self, name: str, world: World | None, settings: Settings, most: int, clashed: Collection[Item]
-    ) -> None:
+    def __init__(self, world: World | None, settings: Settings, most: int, clashed: Collection[Item]) -> None:
         seconds = min(settings.solving.seconds, _SECONDS)
-        self.name, self.world, self.left, self.clashed = name, world, most, clashed
+        self.world, self.left, self.clashed = world, most, clashed
         self.end = time.thread_time() + _PATIENCE
         self.settings = replace(settings, solving=replace(settings.solving, seconds=seconds))
 
@@ -276,39 +250,36 @@ class Prober:
         self.left -= 1
         return Reader.of(source).compiled(compile(source, self.world, settings=self.settings))
 
-    def tried(self, item: Item, changes: Changes, base: Compiled | None, is_first: bool = False) -> Trial:
-        """Puts an item back into the program of outcome `base`. The first of several may touch nothing."""
-        here = changes.after.source
+    def tried(
+        self, item: Item, changes: Changes, base: Compiled | None, is_first: bool = False
+    ) -> tuple[Finding, tuple[SourceFile, Compiled] | None]:
+        """Puts an item back into the program of outcome `base`. The first of several may touch nothing.
+        Returns, with what was found, the program with the item and its outcome, where it does no harm.
+        """
         is_over = self.left <= 0 or time.thread_time() > self.end
         if is_over or base is None or not stands(base):
-            return Trial(UNTRIED, here)
-        edit = put_back(item, changes)
-        if edit is None:
-            return Trial(Finding(State.HOMELESS), here)
-        source = SourceFile(self.name, edit.text)
-        result = self.compiled(source)
+            return UNTRIED, None
+        own = put_back(item, changes)
+        if own is None:
+            return Finding(State.HOMELESS), None
+        result = self.compiled(own.source)
         new = [d for d in new_errors(changes.before, base, result) if not is_first or d.is_error]
         if any(d.code == _TIMED_OUT for d in new):
             self.left = 0  # each further trial would take as long
-            return Trial(UNTRIED, here)
+            return UNTRIED, None
         if result.model is None:
-            return Trial(Finding(State.HOMELESS), here)
-        own = Span(source, edit.start, edit.end)
+            return Finding(State.HOMELESS), None
         stated = _stated_in(result, own)
         fate, now = changes.fates[item]
         if new:
             solving = [d for d in new if d.code in _UNSOLVED]
             parties = tuple(_parties(solving, own, result))
-            if (
-                fate is Fate.REWRITTEN
-                and now
-                and item in self.clashed
-                and _is_mended(stated, now, parties, base)
-            ):
-                return Trial(Finding(State.MENDED), here)
-            return Trial(Finding(State.CONFLICTS, parties, "" if solving else new[0].message), here)
+            was_rewritten = fate is Fate.REWRITTEN and item in self.clashed
+            if was_rewritten and now and _is_mended(stated, now, parties, base):
+                return Finding(State.MENDED), None
+            return Finding(State.CONFLICTS, parties, "" if solving else new[0].message), None
         implied = _is_implied(stated, item, fate, own, result)
-        return Trial(Finding(State.IMPLIED if implied else State.FITS), source, result)
+        return Finding(State.IMPLIED if implied else State.FITS), (own.source, result)
 
 
 def stands(compiled: Compiled | None) -> bool:

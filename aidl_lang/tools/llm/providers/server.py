@@ -14,7 +14,7 @@ from urllib.parse import urlsplit
 import httpx2
 
 from aidl_lang.tools.llm.messages import Finish, Message, ProviderError, Reply, Sampling, Usage
-from aidl_lang.tools.llm.providers.connection import (
+from aidl_lang.tools.llm.providers import (
     DEFAULT_URL,
     UNKNOWN,
     Connection,
@@ -101,7 +101,6 @@ class Server(ABC):
         return f"{self.kind}:{self._model}"
 
     def close(self) -> None:
-        """Releases the connections; without it they go with the object."""
         self._client.close()
 
     def reply(self, messages: Sequence[Message], sampling: Sampling, hear: Callable[[str], None]) -> Reply:
@@ -118,11 +117,9 @@ class Server(ABC):
             else:
                 reply = draft.reply(self._connection.price)
                 return replace(reply, usage=spent + reply.usage)
-        raise ProviderError(
-            "E0938",
-            f"the reply of {self.name} broke off, however often it was asked for",
-            "look at the server, and at what stands between you and it",
-        )
+        hint = "look at the server, and at what stands between you and it"
+        why = f"the reply of {self.name} broke off, however often it was asked for"
+        raise ProviderError("E0938", why, hint)
 
     @abstractmethod
     def _send(self, messages: Sequence[Message], sampling: Sampling) -> Any:
@@ -171,11 +168,9 @@ class Server(ABC):
             raise self._silence() from None
         except sdk.APIConnectionError as error:
             why = without_credentials(one_line(str(error.__cause__)))
-            raise ProviderError(
-                "E0936",
-                f"there is no connection to {self._connection.address}: {why}",
-                "is the server running, and is the base URL right?",
-            ) from None
+            message = f"there is no connection to {self._connection.address}: {why}"
+            hint = "is the server running, and is the base URL right?"
+            raise ProviderError("E0936", message, hint) from None
         except sdk.APIError as error:  # told in the middle of a stream
             raise self._out_of_order(self._words(error.body) or self._words(error.message)) from None
         except UnicodeEncodeError:
@@ -190,11 +185,8 @@ class Server(ABC):
                 "E0932", f"the key was refused{because}", f"look at {self.kind.upper()}_API_KEY"
             )
         if status in (402, 429):
-            return ProviderError(
-                "E0933",
-                f"the limit on requests is reached{because}",
-                "wait, or raise the limit at the provider",
-            )
+            hint = "wait, or raise the limit at the provider"
+            return ProviderError("E0933", f"the limit on requests is reached{because}", hint)
         if status == 404:
             return ProviderError("E0934", f"there is no model `{self._model}`{because}", *self._models_hint())
         if status < 400 or status >= 500:
@@ -234,11 +226,9 @@ class Server(ABC):
         raise ProviderError("E0930", "no model is named", "say --model NAME, or set AIDL_MODEL", *shown)
 
     def _silence(self) -> ProviderError:
-        return ProviderError(
-            "E0937",
-            f"{self._connection.address} was silent for {self._connection.timeout:g} seconds",
-            "--timeout SECONDS gives it longer; a model in main memory may need minutes to read the guide",
-        )
+        why = f"{self._connection.address} was silent for {self._connection.timeout:g} seconds"
+        hint = "--timeout SECONDS gives it longer; a model in main memory may need minutes to read the guide"
+        return ProviderError("E0937", why, hint)
 
     def _out_of_order(self, said: str) -> ProviderError:
         because = f": {said}" if said else ", and does not say why"
@@ -317,8 +307,14 @@ class OpenAI(Server):
 
     def _send(self, messages: Sequence[Message], sampling: Sampling) -> Any:
         said = [{"role": message.role, "content": _content(message)} for message in messages]
-        for _ in range(3):
-            options = self._options(sampling)
+        while True:  # it adapts twice at most
+            wanted = {
+                "seed": sampling.seed,
+                "temperature": sampling.temperature,
+                self._limit: sampling.max_tokens,
+                "stream_options": {"include_usage": True} if self._tells_usage else None,
+            }
+            options: dict[str, Any] = {name: v for name, v in wanted.items() if v is not None}
             try:
                 return self._client.chat.completions.create(
                     model=self._model, messages=said, stream=True, extra_body=dict(sampling.extra), **options
@@ -326,16 +322,6 @@ class OpenAI(Server):
             except (self._sdk.BadRequestError, self._sdk.UnprocessableEntityError) as error:
                 if not self._adapt(self._words(error.body), options):
                     raise
-        raise AssertionError("it adapts twice at most")
-
-    def _options(self, sampling: Sampling) -> dict[str, object]:
-        options: dict[str, object] = {
-            "seed": sampling.seed,
-            "temperature": sampling.temperature,
-            self._limit: sampling.max_tokens,
-            "stream_options": {"include_usage": True} if self._tells_usage else None,
-        }
-        return {name: value for name, value in options.items() if value is not None}
 
     def _adapt(self, said: str, sent: Mapping[str, object]) -> bool:
         """Drops what a server refused from further requests, if it is a matter of the protocol."""
@@ -356,13 +342,9 @@ class OpenAI(Server):
         if refusal := words(dig(said, "refusal")):
             draft.say(refusal)
             draft.finish = Finish.REFUSED
-        self._read_end(document, choice, draft)
-
-    def _read_end(self, document: object, choice: object, draft: Draft) -> None:
         self._refuse_error(choice)
         reason = words(dig(choice, "finish_reason"))
-        is_whole = dig(choice, "message") is not None
-        if reason or is_whole:
+        if reason or dig(choice, "message") is not None:
             draft.finish = draft.finish or _FINISH.get(reason, Finish.COMPLETE)
         if usage := dig(document, "usage"):
             draft.usage = Usage(
