@@ -99,7 +99,7 @@ def reading_terminals() -> dict[str, Node]:
 def _taken_soft_words() -> set[str]:
     """Returns the words that the parser reads as keywords in some place of a name."""
     tables = load_tables()
-    rows = [row for row in tables.states.values() if "NAME" in row or "CALL" in row]
+    rows = [row for row in tables.parsing.states.values() if "NAME" in row or "CALL" in row]
     return {word for word in tables.soft_words if any(tables.types[word] in row for row in rows)}
 
 
