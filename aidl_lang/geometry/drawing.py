@@ -222,14 +222,18 @@ def draw(model: SolvedModel) -> tuple[Drawing, Findings]:
     network = Network([*curves, *around], boxes, union_bounds([*boxes, *ink[1]]))
     styles = styles_of(root)
     blind = [path for path, style in styles.items() if style.is_blind]
-    aside = frozenset(veils(root))
+    veiled = list(veils(root, styles))
+    aside = frozenset(path for _, seen, _ in veiled for path in seen)
+    of_bodies = styles | {
+        s: replace(styles[s], opacity=0.0, stroke=0.0) for s, _, is_bare in veiled if is_bare
+    }
     made = {path: [s for s in of if s.geometry.path not in aside] for path, of in shapes.items()}
     network, walk, masses, traced, gaps = _closed(
         root, network, shapes, partial(_arranged, root, made, clips, blind)
     )
     regions = {path: outline.region for path, outline in traced.items()}
     bodies = tuple(
-        Body(path, regions[path], styles[path], region_bounds(regions[path]))
+        Body(path, regions[path], of_bodies[path], region_bounds(regions[path]))
         for path in (m.structure.path for m in masses)
     )
     order = places_of(root)
@@ -371,7 +375,6 @@ def _collect(root: SolvedStructure, notes: list[Diagnostic]) -> tuple[_Curves, _
 
 
 def _has_strokes(geometry: SolvedGeometry) -> bool:
-    """Tells whether there are letters of strokes in what is drawn of a geometry."""
     return not geometry.construction and (geometry.stroked or any(map(_has_strokes, geometry.parts)))
 
 

@@ -107,7 +107,7 @@ def upright_note(hole: SolvedStructure) -> Diagnostic:
 def _loose_curves(finding: LooseCurves, network: Network) -> Diagnostic:
     s = finding.structure
     names = _whole_names(s, [g for g, _ in finding.curves])
-    gap = _gap(finding, network)
+    gap, own = _gap(finding, network), {g.path for g, _ in finding.curves}
     plural = len(set(names)) > 1
     message = f"{named(names)} {'enclose' if plural else 'encloses'} nothing in {s.kind} `{s.path}`"
     if gap is not None and math.dist(gap[0].at, gap[1].at) <= network.tolerance:
@@ -125,7 +125,7 @@ def _loose_curves(finding: LooseCurves, network: Network) -> Diagnostic:
             secondary = (Label(other.span, f"the nearest other end, at {at(q)}"),) if other.span else ()
         else:
             hints.insert(0, "close the outline: draw the missing curve, sharing the end points")
-    elif (shape := _partly_closed(finding)) is not None:
+    elif shape := next((g for g in s.geometry if own < set(_primitive_paths(g))), None):  # others close it
         hints.insert(0, f"its strokes become material with a width, as in `thick({shape.type}(…), 1.2)`")
     else:
         hints.insert(0, "a face needs a closed outline that is not flat: look at its sizes and its points")
@@ -163,12 +163,6 @@ def _whole_names(structure: SolvedStructure, loose: Sequence[SolvedGeometry]) ->
         for curve in curves
     }
     return list(dict.fromkeys(whole.get(g.path, local(structure, g)) for g in loose))
-
-
-def _partly_closed(finding: LooseCurves) -> SolvedGeometry | None:
-    """Returns the shape of which these primitives are some and others bound a face, if there is one."""
-    loose = {g.path for g, _ in finding.curves}
-    return next((g for g in finding.structure.geometry if loose < set(_primitive_paths(g))), None)
 
 
 def _primitive_paths(geometry: SolvedGeometry) -> list[str]:

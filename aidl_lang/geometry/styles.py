@@ -159,19 +159,25 @@ def is_inlay(s: SolvedStructure) -> bool:
     return s.kind == "solid" and not s.attributes.keys().isdisjoint(FILLING)
 
 
-def veils(root: SolvedStructure, *, is_inner: bool = False) -> Iterator[str]:
-    """Yields the paths of the translucent and fading areas of solids, which add no material: they lie on
-    what else the body has. A body of nothing else is made of them.
+def veils(
+    root: SolvedStructure, styles: Mapping[str, Style], *, is_inner: bool = False
+) -> Iterator[tuple[str, Sequence[str], bool]]:
+    """Yields each body by its path, with its translucent and fading areas, which add no material and lie on
+    what else it has, and whether they are all that it is: then it is made of them. That is told, too, of
+    one that shows through and is nothing but areas: no colour of its own lies below them.
     """
     if root.kind == "solid" and not is_inner:
         parts = [root]
         for part in parts:
             parts += [child for child in part.structures if child.kind == "solid"]
         drawn = [g for part in parts for g in part.drawn if not g.construction]
-        seen = [g.path for g in drawn if is_filled(g, "solid") and styled(Style(), g).is_clear]
-        yield from seen if len(seen) < len(drawn) else ()
+        areas = [g for g in drawn if is_filled(g, "solid")]
+        seen = [g.path for g in areas if styled(Style(), g).is_clear]
+        is_bare = len(areas) == len(drawn) > 0
+        is_made = is_bare and len(seen) == len(drawn)
+        yield root.path, () if is_made else seen, is_made or (is_bare and styles[root.path].is_clear)
     for child in root.structures:
-        yield from veils(child, is_inner=root.kind == child.kind == "solid")
+        yield from veils(child, styles, is_inner=root.kind == child.kind == "solid")
 
 
 def is_unlined(stated: Attributes) -> bool:

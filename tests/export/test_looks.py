@@ -271,6 +271,30 @@ def test_what_is_written_later_lies_on_top() -> None:
         assert near(image.getpixel((430, 530)), image.getpixel((530 - 300, 730)))  # the band ends at the spot
 
 
+VEILS = """
+@stroke(none)
+assembly a {
+    @color("blue") solid wall { body = rectangle(center: fixed((0, 0)), width: 100, height: 100) }
+    solid pane { @color("red") @opacity(0.5) glass = square(center: fixed((-30, 0)), size: 20) }
+    @opacity(0.5) solid half { @color("red") glass = square(center: fixed((0, 0)), size: 20) }
+    solid glow { @color("red") @shade(fade) light = circle(center: fixed((30, 0)), radius: 10) }
+}
+"""
+
+
+@pytest.mark.parametrize("suffix", [".png", ".pdf"])
+def test_nothing_lies_below_what_a_body_of_areas_shows_of_what_is_behind(suffix: str) -> None:
+    made = written(suffix, VEILS, **({"pixels": 1060} if suffix == ".png" else {}))
+    if suffix == ".png":
+        image = Image.open(io.BytesIO(made.data)).convert("RGB")
+    else:
+        image = PdfDocument(made.data)[0].render(scale=10 / 72 * 25.4).to_pil().convert("RGB")
+    assert near(image.getpixel((230, 530)), (128, 0, 128))
+    assert near(image.getpixel((530, 530)), (128, 0, 128))
+    assert near(image.getpixel((830, 530)), (255, 0, 0))
+    assert near(image.getpixel((830, 624)), (0, 0, 255))
+
+
 LETTERS = """
 assembly a {
     @color("yellow") solid plate { body = rectangle(center: fixed((0, 0)), width: 100, height: 60) }

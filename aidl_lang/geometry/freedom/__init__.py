@@ -543,9 +543,6 @@ def _reduced(basis: Floats) -> Floats:
     return basis @ np.linalg.inv(basis[own])
 
 
-__all__ = ["motions", "report"]
-
-
 # --- The report on what can still move: a line for each group of things that moves against the rest.
 
 _NAMED = 3
