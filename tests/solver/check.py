@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+from scipy.optimize import nnls
 
 from aidl_lang.solver import Problem, Relation, Row, Solution
 from aidl_lang.solver.expression import Op
@@ -81,6 +82,25 @@ def assert_solved(problem: Problem, solution: Solution) -> None:
                 value = evaluate(problem, row.expression, solution.values)
                 violation = max(value, 0.0) if row.relation is Relation.AT_MOST else abs(value)
                 assert violation <= 2e-9 * row.scale
+
+
+def assert_smallest_change(problem: Problem, solution: Solution, tolerance: float = 1e-5) -> None:
+    """First-order conditions: the displacement is a combination of gradients of the active rows, and those
+    of inequalities push, never pull."""
+    rows = [row for c in problem.constraints if c.weight is None for row in c.rows]
+    values = values_of(problem, [row.expression for row in rows], solution.values)
+    both = [row for row in rows if row.relation is Relation.EQUAL]
+    one_way = [
+        row
+        for row, value in zip(rows, values, strict=True)
+        if row.relation is Relation.AT_MOST and abs(value) <= 1e-7 * row.scale
+    ]
+    displacement = (solution.values - problem.initial) / problem.scale
+    gradients = jacobian(problem, [row.expression for row in both + one_way], solution.values) * problem.scale
+    gradients /= np.maximum(np.linalg.norm(gradients, axis=1, keepdims=True), 1e-9)
+    pushes = np.vstack([-gradients, gradients[: len(both)], np.zeros((1, len(displacement)))])
+    _, lack = nnls(pushes.T, displacement)
+    assert lack <= tolerance * max(1, np.abs(displacement).max())
 
 
 def assert_honest(problem: Problem, solution: Solution, tolerance: float = 1e-9) -> None:

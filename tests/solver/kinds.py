@@ -1,4 +1,4 @@
-"""Kinds of links between points and circles: what each measures."""
+"""Kinds of links between points and circles: what each measures, and what becomes of that when all moves."""
 
 from __future__ import annotations
 
@@ -89,6 +89,9 @@ class Kind:
     operands of each a letter: p for a point, c for a circle
     measure  what is compared with a number, or a pair of that
     apart    operands that must not coincide, or it has no derivative
+    rigid    whether it stays what it is when the plane is turned
+    mirrored sign that it takes when x changes sign; 0 where that makes something else of it
+    swapped  its name when x and y change places, if it has another one, or none but the same rows
     length   whether it is a length, else a ratio or an angle
     turn     whether it is an angle, which counts modulo a turn
     """
@@ -96,6 +99,9 @@ class Kind:
     operands: str
     measure: Callable[..., E | Place]
     apart: tuple[tuple[int, int], ...] = ()
+    rigid: bool = True
+    mirrored: int = 1
+    swapped: str = ""
     length: bool = True
     turn: bool = False
 
@@ -105,30 +111,31 @@ FIRST, LAST, BOTH = ((0, 1),), ((2, 3),), ((0, 1), (2, 3))
 
 KINDS: dict[str, Kind] = {
     "distance": Kind("pp", distance, FIRST),
-    "offset_x": Kind("pp", lambda p, q: q[0] - p[0]),
-    "offset_y": Kind("pp", lambda p, q: q[1] - p[1]),
-    "x": Kind("p", lambda p: p[0]),
-    "y": Kind("p", lambda p: p[1]),
-    "coincident": Kind("pp", _minus),
-    "direction": Kind("pp", _direction, FIRST, length=False, turn=True),
-    "angle": Kind("pppp", _angle, BOTH, length=False, turn=True),
-    "parallel": Kind("pppp", _of_unit(_cross), BOTH, length=False),
+    "offset_x": Kind("pp", lambda p, q: q[0] - p[0], rigid=False, mirrored=-1, swapped="offset_y"),
+    "offset_y": Kind("pp", lambda p, q: q[1] - p[1], rigid=False, swapped="offset_x"),
+    "x": Kind("p", lambda p: p[0], rigid=False, mirrored=-1, swapped="y"),
+    "y": Kind("p", lambda p: p[1], rigid=False, swapped="x"),
+    "coincident": Kind("pp", _minus, mirrored=0, swapped="coincident"),
+    "direction": Kind("pp", _direction, FIRST, mirrored=-1, length=False, turn=True),
+    "angle": Kind("pppp", _angle, BOTH, mirrored=-1, length=False, turn=True),
+    "parallel": Kind("pppp", _of_unit(_cross), BOTH, mirrored=-1, length=False),
     "perpendicular": Kind("pppp", _of_unit(_dot), BOTH, length=False),
-    "on_line": Kind("ppp", _beside, ((1, 2),)),
+    "on_line": Kind("ppp", _beside, ((1, 2),), mirrored=-1),
     "equal_length": Kind("pppp", lambda a, b, c, d: distance(a, b) - distance(c, d), BOTH),
-    "midpoint": Kind("ppp", _from_middle),
-    "symmetric": Kind("pppp", _mirrored, LAST),
+    "midpoint": Kind("ppp", _from_middle, mirrored=0, swapped="midpoint"),
+    "symmetric": Kind("pppp", _mirrored, LAST, mirrored=0),
     "radius": Kind("c", lambda c: c[1]),
     "equal_radius": Kind("cc", lambda c, d: c[1] - d[1]),
     "on_circle": Kind("cp", lambda c, p: distance(c[0], p) - c[1], FIRST),
-    "tangent_line": Kind("cpp", lambda c, a, b: _beside(c[0], a, b) - c[1], ((1, 2),)),
+    "tangent_line": Kind("cpp", lambda c, a, b: _beside(c[0], a, b) - c[1], ((1, 2),), mirrored=0),
     "tangent_outside": Kind("cc", lambda c, d: distance(c[0], d[0]) - (c[1] + d[1]), FIRST),
     "tangent_inside": Kind("cc", lambda c, d: distance(c[0], d[0]) - (c[1] - d[1]), FIRST),
-    "arc_length": Kind("cpp", _arc_length, ((0, 1), (0, 2))),
-    "gap_x": Kind("pppp", _gap(0)),
-    "gap_y": Kind("pppp", _gap(1)),
-    "extent_x": Kind("ppp", _extent(0)),
-    "extent_y": Kind("ppp", _extent(1)),
+    "arc_length": Kind("cpp", _arc_length, ((0, 1), (0, 2)), mirrored=0),
+    "gap_x": Kind("pppp", _gap(0), rigid=False, mirrored=0, swapped="gap_y"),
+    "gap_y": Kind("pppp", _gap(1), rigid=False, mirrored=0, swapped="gap_x"),
+    "extent_x": Kind("ppp", _extent(0), rigid=False, swapped="extent_y"),
+    "extent_y": Kind("ppp", _extent(1), rigid=False, swapped="extent_x"),
 }
+OPPOSITE = {"=": "=", "<=": ">=", ">=": "<="}
 BRANCHED = frozenset({"gap_x", "gap_y", "extent_x", "extent_y"})
 SMOOTH = tuple(name for name in KINDS if name not in BRANCHED)

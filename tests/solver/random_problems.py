@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 from hypothesis import HealthCheck, settings
@@ -9,7 +10,7 @@ from hypothesis import strategies as st
 
 from tests.amount import tries
 
-from .kinds import KINDS, SMOOTH
+from .kinds import KINDS, SMOOTH, Kind
 from .sketches import Circle, Group, Link, Point, Sketch
 
 GRID = 10.0
@@ -32,7 +33,13 @@ class Taste:
     links: tuple[int, int] = (1, 8)
     senses: tuple[str, ...] = ("=",)
     noise: float = 0.5
+    size_noise: float = 0.0
     kept: bool = False
+    placed: bool = False
+
+
+def kinds_where(predicate: Callable[[Kind], bool]) -> tuple[str, ...]:
+    return tuple(name for name in SMOOTH if predicate(KINDS[name]))
 
 
 @st.composite
@@ -52,7 +59,7 @@ def sketches(draw: st.DrawFn, taste: Taste = Taste()) -> Sketch:
         Circle(
             draw(st.integers(0, len(points) - 1)),
             draw(st.integers(1, 6)) * GRID / 2,
-            0.0,
+            draw(off) * (taste.size_noise / taste.noise if taste.noise else 0.0),
             taste.kept,
         )
         for _ in range(draw(st.integers(*taste.circles)))
@@ -75,4 +82,5 @@ def links(draw: st.DrawFn, sketch: Sketch, taste: Taste) -> Link:
         holder=draw(st.sampled_from(common)),
         sense=sense,
         room=0.0 if sense == "=" else draw(st.integers(0, 4)) / 4,
+        placed=taste.placed and draw(st.booleans()),
     )

@@ -5,9 +5,12 @@ Everything here is found by finite differences on the independent evaluation of 
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 
-from aidl_lang.solver import Problem, Relation, Row
+from aidl_lang.solver import Constraint, Problem, Relation, Row
+from aidl_lang.solver.expression import Op
 
 from .check import jacobian, values_of
 
@@ -20,6 +23,18 @@ STEP = 0.02
 
 def hard_rows(problem: Problem) -> list[Row]:
     return [row for c in problem.constraints if c.weight is None for row in c.rows]
+
+
+def mentioned(problem: Problem, constraint: Constraint) -> set[int]:
+    """The unknowns that its expressions are made of."""
+    tape, seen = problem.tape, set[int]()
+    stack = [row.expression for row in constraint.rows]
+    while stack:
+        node = stack.pop()
+        if node not in seen:
+            seen.add(node)
+            stack.extend(() if tape.op_list[node] == Op.UNKNOWN else tape.operand_lists[node])
+    return {tape.operand_lists[node][0] for node in seen if tape.op_list[node] == Op.UNKNOWN}
 
 
 def active_rows(problem: Problem, x: np.ndarray, near: float = 1e-6) -> list[Row]:
@@ -45,6 +60,20 @@ def is_regular(problem: Problem, x: np.ndarray, free: np.ndarray | None = None) 
     if bool(((sigma > NOTHING) & (sigma < GAP)).any()):
         return False
     return all(surface.neighbour(direction) is not None for direction in surface.directions())
+
+
+def neighbours(problem: Problem, x: np.ndarray) -> Iterator[np.ndarray]:
+    """Points near `x` that satisfy all hard rows if `x` does."""
+    surface, rows = _Surface(problem, x), hard_rows(problem)
+    at_most = np.array([row.relation is Relation.AT_MOST for row in rows], dtype=np.bool_)
+    slack = np.array([1e-9 * row.scale for row in rows])
+    for direction in surface.directions():
+        for side in (direction, -direction):
+            found = surface.neighbour(side)
+            if found is not None:
+                values = values_of(problem, [row.expression for row in rows], found)
+                if (np.where(at_most, values, np.abs(values)) <= slack).all():
+                    yield found
 
 
 class _Surface:

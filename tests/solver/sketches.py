@@ -8,7 +8,7 @@ Sketches print as what one would type to build them again.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from types import SimpleNamespace
 from typing import TypeAlias
@@ -19,7 +19,7 @@ from aidl_lang.solver import Problem
 
 from .build import E, Model, call
 from .check import values_of
-from .kinds import KINDS, Place
+from .kinds import KINDS, OPPOSITE, Place
 
 Vector: TypeAlias = tuple[float, float]
 
@@ -62,6 +62,7 @@ class Link:
     room: float = 0.0
     excess: float = 0.0
     weight: float | None = None
+    placed: bool = False
 
 
 @dataclass(frozen=True)
@@ -69,10 +70,12 @@ class Built:
     """
     problem the sketch as the solver wants it
     known   (n,) the solution that it was made around
+    where   (n,) the unknown for each coordinate of the sketch: points, radii, frames
     """
 
     problem: Problem
     known: np.ndarray
+    where: np.ndarray
 
 
 @dataclass(frozen=True)
@@ -84,8 +87,9 @@ class Sketch:
     unit: float = 1.0
     """What the solver is told is a typical length."""
 
-    def build(self) -> Built:
-        return _Builder(self).built()
+    def build(self, order: Sequence[int] | None = None) -> Built:
+        """The problem; its unknowns in the given order of the sketch's coordinates."""
+        return _Builder(self, order).built()
 
     def problem(self) -> Problem:
         return self.build().problem
@@ -118,13 +122,108 @@ class Sketch:
             return 0.5 < (end - start) % (2.0 * math.pi) < 2.0 * math.pi - 0.5
         return True
 
+    # -- the same in other words
+
+    def moved(self, matrix: np.ndarray, shift: Vector = (0.0, 0.0)) -> Sketch:
+        """The plane mapped by a similarity. Relations must be of kinds that this leaves what they are."""
+        factor = math.sqrt(abs(float(np.linalg.det(matrix))))
+        mirrored = float(np.linalg.det(matrix)) < 0.0
+
+        def turned(v: Vector, by: Vector = (0.0, 0.0)) -> Vector:
+            x, y = (matrix @ np.array(v)).tolist()
+            return x + by[0], y + by[1]
+
+        def outermost(group: int) -> Vector:
+            return shift if group == 0 else (0.0, 0.0)
+
+        def linked(link: Link) -> Link:
+            kind, sense = KINDS[link.kind], link.sense
+            if mirrored and kind.mirrored < 0:
+                sense = OPPOSITE[sense]
+            return replace(link, sense=sense, room=link.room * factor if kind.length else link.room)
+
+        return replace(
+            self,
+            points=tuple(
+                replace(p, at=turned(p.at, outermost(p.group)), off=turned(p.off)) for p in self.points
+            ),
+            circles=tuple(replace(c, radius=c.radius * factor, off=c.off * factor) for c in self.circles),
+            groups=tuple(
+                replace(g, at=turned(g.at, outermost(g.parent)), off=turned(g.off)) for g in self.groups
+            ),
+            links=tuple(map(linked, self.links)),
+            unit=self.unit * factor,
+        )
+
+    def beside(self, other: Sketch) -> Sketch:
+        """Both, without anything in common but the root."""
+        points, circles, groups = len(self.points), len(self.circles), len(self.groups)
+
+        def shifted(group: int) -> int:
+            return group + groups if group else 0
+
+        def linked(link: Link) -> Link:
+            letters = KINDS[link.kind].operands
+            on = tuple(i + (circles if c == "c" else points) for c, i in zip(letters, link.on, strict=True))
+            return replace(link, on=on, holder=shifted(link.holder))
+
+        return Sketch(
+            self.points + tuple(replace(p, group=shifted(p.group)) for p in other.points),
+            self.circles + tuple(replace(c, center=c.center + points) for c in other.circles),
+            self.groups + tuple(replace(g, parent=shifted(g.parent)) for g in other.groups),
+            self.links + tuple(map(linked, other.links)),
+            self.unit,
+        )
+
+    def halves(self, first: Sketch) -> tuple[np.ndarray, np.ndarray]:
+        """Which coordinates of `first.beside(second)` belong to either."""
+        counts = [
+            (2, self.points, first.points),
+            (1, self.circles, first.circles),
+            (2, self.groups, first.groups),
+        ]
+        mine = np.concatenate(
+            [np.arange(size * len(every)) < size * len(some) for size, every, some in counts]
+        )
+        return np.flatnonzero(mine), np.flatnonzero(~mine)
+
+    def flipped(self) -> Sketch:
+        """x and y in each other's place."""
+        mirrored = self.moved(np.array([[0.0, 1.0], [1.0, 0.0]]))
+
+        def linked(link: Link, before: Link) -> Link:
+            name = KINDS[link.kind].swapped
+            return replace(link, kind=name, sense=before.sense) if name else link
+
+        return replace(mirrored, links=tuple(map(linked, mirrored.links, self.links)))
+
+    def placed_at(self, coordinates: np.ndarray) -> Sketch:
+        """Solved and written at these coordinates."""
+        left = iter(coordinates.tolist())
+        return replace(
+            self,
+            points=tuple(replace(p, at=(next(left), next(left)), off=(0.0, 0.0)) for p in self.points),
+            circles=tuple(replace(c, radius=next(left), off=0.0) for c in self.circles),
+            groups=tuple(replace(g, at=(next(left), next(left)), off=(0.0, 0.0)) for g in self.groups),
+        )
+
     def with_links(self, links: Iterable[Link]) -> Sketch:
         """Further links, as far as they are sound."""
         return replace(self, links=self.links + tuple(link for link in links if self.is_sound(link)))
 
+    def within(self) -> Sketch:
+        """All of it in a group of its own below the root, whose frame is not moved by anything."""
+        return Sketch(
+            tuple(replace(p, group=p.group + 1) for p in self.points),
+            self.circles,
+            (Group(0), *(replace(g, parent=g.parent + 1) for g in self.groups)),
+            tuple(replace(r, holder=r.holder + 1) for r in self.links),
+            self.unit,
+        )
+
 
 class _Builder:
-    def __init__(self, sketch: Sketch) -> None:
+    def __init__(self, sketch: Sketch, order: Sequence[int] | None) -> None:
         self.sketch, self.model = sketch, Model()
         m = self.model
         for group in sketch.groups:
@@ -137,8 +236,13 @@ class _Builder:
             entries.append((c.radius, c.off, {"group": group, "kept": c.kept}))
         for child, g in enumerate(sketch.groups, 1):
             entries.extend((g.at[i], g.off[i], {"group": g.parent, "frame": child}) for i in (0, 1))
-        self.unknowns = [m.unknown(at + off, scale=sketch.unit, **more) for at, off, more in entries]
-        self.known = np.array([at for at, _, _ in entries], dtype=np.float64)
+        order = range(len(entries)) if order is None else order
+        self.where = np.argsort(np.array(order, dtype=np.int64))
+        made = {
+            i: m.unknown(entries[i][0] + entries[i][1], scale=sketch.unit, **entries[i][2]) for i in order
+        }
+        self.unknowns = [made[i] for i in range(len(entries))]
+        self.known = np.array([entries[i][0] for i in order], dtype=np.float64)
 
     def point(self, index: int, holder: int = 0) -> Place:
         """As seen from the holder."""
@@ -171,7 +275,7 @@ class _Builder:
             self.tie(link, [e - next(wanted) for e in measured])
         for index in range(len(sketch.points)):
             m.observe(sketch.points[index].group, *self.point(index))
-        return Built(m.problem(), self.known)
+        return Built(m.problem(), self.known, self.where)
 
     def tie(self, link: Link, residuals: list[E]) -> None:
         kind, m = KINDS[link.kind], self.model
@@ -180,9 +284,11 @@ class _Builder:
             residuals = [e - link.excess for e in residuals]
         if kind.turn:
             residuals = [call("atan2", call("sin", e), call("cos", e)) for e in residuals]
+        first = self.sketch.anchors(link)[:1] if link.placed else []
+        placed = [self.unknowns[2 * point + axis] for point in first for axis in (0, 1)]
         if link.sense == "=":
-            m.equal(*residuals, group=link.holder, scale=scale, weight=link.weight)
+            m.equal(*residuals, group=link.holder, placed=placed, scale=scale, weight=link.weight)
         else:
             sign = 1.0 if link.sense == "<=" else -1.0
             residuals = [e * sign - link.room for e in residuals]
-            m.at_most(*residuals, group=link.holder, scale=scale, weight=link.weight)
+            m.at_most(*residuals, group=link.holder, placed=placed, scale=scale, weight=link.weight)

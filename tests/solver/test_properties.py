@@ -6,6 +6,7 @@ Sketches are made around a known solution (`sketches`), and written so near that
 
 from __future__ import annotations
 
+import math
 import os
 import pickle
 import random
@@ -18,6 +19,7 @@ from dataclasses import replace
 from hashlib import sha256
 
 import numpy as np
+import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 from scipy.optimize import minimize
@@ -26,11 +28,11 @@ from aidl_lang.solver import Constraint, Problem, Settings, Solution, solve
 from aidl_lang.solver.analysis import analyse
 from tests.documents import ROOT
 
-from .check import assert_honest, assert_solved, jacobian, values_of
+from .check import assert_honest, assert_smallest_change, assert_solved, jacobian, values_of
 from .kinds import KINDS
 from .random_expressions import HOSTILE, Tangle, tangles
-from .random_problems import Taste, links, profile, sketches
-from .regularity import is_regular
+from .random_problems import Taste, kinds_where, links, profile, sketches
+from .regularity import is_regular, neighbours
 from .sketches import Built, Circle, Link, Point, Sketch
 
 CLOSE = 1e-6
@@ -40,6 +42,7 @@ EXACTLY = 1e-7
 EQUATIONS = Taste()
 INEQUALITIES = Taste(senses=("=", "=", "<=", ">="))
 BOXES = Taste(kinds=tuple(KINDS), senses=("=", "<=", ">="))
+RIGID = Taste(kinds=kinds_where(lambda kind: kind.rigid))
 TREES = Taste(groups=3, circles=(0, 1), links=(1, 6))
 
 
@@ -57,6 +60,12 @@ def solved(problem: Problem) -> Solution:
     solution = solve(problem)
     assert_solved(problem, solution)
     return solution
+
+
+def coordinates(sketch: Sketch, order: list[int] | None = None) -> np.ndarray:
+    """The sketch's coordinates where they are solved."""
+    built = sketch.build(order)
+    return solved(built.problem).values[built.where]
 
 
 def assert_same(one: np.ndarray, other: np.ndarray, tolerance: float = CLOSE) -> None:
@@ -78,6 +87,17 @@ def test_what_can_hold_is_solved_by_no_more_than_the_known_change(sketch: Sketch
     assert_honest(built.problem, solution)
     assert solution.failures == ()
     assert change(built, solution.values) <= change(built, built.known) * (1.0 + 1e-6) + 1e-9
+
+
+@given(regular(INEQUALITIES))
+@profile(60)
+def test_no_neighbour_is_nearer(sketch: Sketch) -> None:
+    built = sketch.build()
+    solution = solved(built.problem)
+    assert_smallest_change(built.problem, solution)
+    reached = change(built, solution.values)
+    for neighbour in neighbours(built.problem, solution.values):
+        assert change(built, neighbour) >= reached - 1e-7 * (1.0 + reached)
 
 
 @given(regular(INEQUALITIES))
@@ -155,6 +175,56 @@ def test_boxes_are_solved_honestly(sketch: Sketch) -> None:
     assert_honest(problem, solved(problem))
 
 
+# ---- the same in other words ----------------------------------------------------------------------------
+
+
+def rotation(angle: float) -> np.ndarray:
+    return np.array([[math.cos(angle), -math.sin(angle)], [math.sin(angle), math.cos(angle)]])
+
+
+TURN, QUARTER = st.floats(-math.pi, math.pi), st.sampled_from([1, 2, 3])
+SIMILARITIES: dict[str, tuple[Taste, st.SearchStrategy[np.ndarray]]] = {
+    "quarter turns": (
+        RIGID,
+        QUARTER.map(lambda k: np.linalg.matrix_power(np.array([[0, -1], [1, 0]]), k) * 1.0),
+    ),
+    "turns": (RIGID, TURN.map(rotation)),
+    "mirror": (Taste(kinds=kinds_where(lambda kind: kind.mirrored != 0)), st.just(np.diag([-1.0, 1.0]))),
+    "size": (INEQUALITIES, st.floats(-4.0, 4.0).map(lambda e: 10.0**e * np.eye(2))),
+}
+
+
+def assert_moves_along(sketch: Sketch, matrix: np.ndarray, shift: tuple[float, float]) -> None:
+    moved = sketch.moved(matrix, shift)
+    assume(all(map(moved.is_sound, moved.links)))
+    before = coordinates(sketch)
+    expected = sketch.placed_at(before).moved(matrix, shift).build()
+    after = coordinates(moved)
+    assert_same(after, expected.known[expected.where], CLOSE * (moved.unit + 1e-9 * np.abs(shift).max()))
+
+
+@pytest.mark.parametrize("name", SIMILARITIES)
+@pytest.mark.parametrize("groups", [0, 2])
+@given(data=st.data())
+@profile(20)
+def test_what_is_turned_mirrored_or_scaled_is_solved_alike(
+    name: str, groups: int, data: st.DataObject
+) -> None:
+    taste, matrices = SIMILARITIES[name]
+    sketch = data.draw(regular(replace(taste, groups=groups)))
+    assert_moves_along(sketch, data.draw(matrices), (0.0, 0.0))
+
+
+@given(
+    regular(replace(INEQUALITIES, kinds=kinds_where(lambda kind: kind.mirrored != 0 or kind.swapped != "")))
+)
+@profile(25)
+def test_what_is_flipped_about_the_diagonal_is_solved_alike(sketch: Sketch) -> None:
+    flipped = sketch.flipped()
+    expected = sketch.placed_at(coordinates(sketch)).flipped().build()
+    assert_same(coordinates(flipped), expected.known[expected.where])
+
+
 # ---- order ----------------------------------------------------------------------------------------------
 
 
@@ -212,7 +282,41 @@ def test_an_inequality_with_room_to_spare_changes_nothing(sketch: Sketch, data: 
         assert (after.degrees, after.free) == (before.degrees, before.free)
 
 
+@given(sketches(TREES), sketches(TREES))
+@profile(40)
+def test_what_is_unrelated_changes_nothing(sketch: Sketch, other: Sketch) -> None:
+    mine, _ = sketch.beside(other).halves(sketch)
+    together, alone = sketch.beside(other).build(), sketch.build()
+    values = solve(together.problem).values[together.where]
+    assert_same(values[mine], solve(alone.problem).values[alone.where], 0.0)
+
+
+@given(st.lists(regular(replace(TREES, kept=True)), min_size=2, max_size=4), st.integers(1, 12))
+@profile(8)
+def test_each_of_many_is_solved_as_if_alone(several: list[Sketch], times: int) -> None:
+    many, places = several[0].within(), [np.arange(len(several[0].within().build().known))]
+    for sketch in several[1:] * times:
+        more = many.beside(sketch.within())
+        mine, others = more.halves(many)
+        many, places = more, [*(mine[place] for place in places), others]
+    alone = [coordinates(sketch.within()) for sketch in several]
+    values = coordinates(many)
+    assert_same(values[places[0]], alone[0], EXACTLY)
+    for place, expected in zip(places[1:], alone[1:] * times, strict=True):
+        assert_same(values[place], expected, EXACTLY)
+
+
 # ---- the tree -------------------------------------------------------------------------------------------
+
+
+@given(sketches(TREES), sketches(replace(TREES, noise=0.0)))
+@profile(30)
+def test_a_descendant_that_nothing_mentions_is_rigid(sketch: Sketch, other: Sketch) -> None:
+    both = sketch.beside(other.within())
+    _, inner = both.halves(sketch)
+    built = both.build()
+    values = solve(built.problem).values
+    assert_same(values[built.where][inner], built.problem.initial[built.where][inner], 0.0)
 
 
 def assert_others_stay(built: Built, free: np.ndarray) -> Solution:
@@ -301,5 +405,4 @@ def test_the_same_digits_twice_and_in_any_process(several: list[Sketch]) -> None
 def test_an_arc_may_begin_where_atan2_jumps() -> None:
     """Its start is to the left of its centre."""
     points = (Point((0.0, 0.0)), Point((-10.0, 0.0), (0.0, 0.05)), Point((0.0, -10.0), (0.05, 0.0)))
-    links = (Link("arc_length", (0, 1, 2)),)
-    solved(Sketch(points, (Circle(0, 5.0, 0.25, kept=True),), links=links).problem())
+    coordinates(Sketch(points, (Circle(0, 5.0, 0.25, kept=True),), links=(Link("arc_length", (0, 1, 2)),)))
