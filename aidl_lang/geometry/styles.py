@@ -162,9 +162,9 @@ def is_inlay(s: SolvedStructure) -> bool:
 def veils(
     root: SolvedStructure, styles: Mapping[str, Style], *, is_inner: bool = False
 ) -> Iterator[tuple[str, Sequence[str], bool]]:
-    """Yields each body by its path, with its translucent and fading areas, which add no material and lie on
-    what else it has, and whether they are all that it is: then it is made of them. That is told, too, of
-    one that shows through and is nothing but areas: no colour of its own lies below them.
+    """Yields for each body its path, the paths of its veils, and whether it is bare. Veils are translucent
+    and fading areas that add no material: they lie on what else the body has. A body of nothing else is
+    made of them. A body is bare if it is all areas and shows what is behind: they have no colour below them.
     """
     if root.kind == "solid" and not is_inner:
         parts = [root]
