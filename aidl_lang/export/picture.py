@@ -48,7 +48,7 @@ from aidl_lang.geometry.drawing import Body, Drawing, Stroke
 from aidl_lang.geometry.nearness import inside
 from aidl_lang.geometry.region import Polygon, Region, face_polygons, piece_points, region_bounds
 from aidl_lang.geometry.solved import SolvedModel, SolvedStructure
-from aidl_lang.geometry.styles import DASH, GAP, Shade, Style, layers, stacked
+from aidl_lang.geometry.styles import DASH, GAP, Shade, Style, layers, stacked, united_parts
 
 # --- Splits pictures larger than the paper into several pages, printed 1:1 and joined afterwards.
 #
@@ -365,11 +365,9 @@ def _marks(root: SolvedStructure, drawing: Drawing, size: float) -> Iterator[tup
 
 def _fills(root: SolvedStructure, drawing: Drawing) -> dict[str, str]:
     """Returns the colours of bodies, and of the solids that are united with them, by their paths."""
-    fills = {body.path: body.style.color or marks.body_fill(k) for k, body in enumerate(drawing.bodies)}
-    for s in root.walk():
-        inner = (c.path for c in s.structures if c.kind == s.kind == "solid" and s.path in fills)
-        fills |= dict.fromkeys(inner, fills.get(s.path, ""))
-    return fills
+    structures = {s.path: s for s in root.walk()}
+    colors = [(b.path, b.style.color or marks.body_fill(k)) for k, b in enumerate(drawing.bodies)]
+    return {part.path: color for path, color in colors for part in united_parts(structures[path])}
 
 
 def _shadows(root: SolvedStructure, drawing: Drawing) -> Iterator[tuple[str, Area]]:

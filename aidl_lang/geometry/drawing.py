@@ -90,6 +90,7 @@ from aidl_lang.geometry.styles import (
     stacked,
     styled,
     styles_of,
+    united_parts,
     veils,
 )
 
@@ -271,9 +272,8 @@ def draw(model: SolvedModel) -> tuple[Drawing, Findings]:
             for s in root.walk()
             if len(styles[s.path].depth) > 1 and s.path in regions and regions[s.path].circle is None
         ]
-        is_seen = partial(_is_seen, styles, areas, order)
         for f in walk.findings:
-            if not (isinstance(f, InnerLoop | CoveredHoles) and is_seen(f)):
+            if not (isinstance(f, InnerLoop | CoveredHoles) and _is_seen(f, styles, areas, order)):
                 notes += finding_notes(f, network)
         notes += detached_notes(root, paths, touching)
         notes += piece_notes(root, walk, masses, solids, touching.near())
@@ -392,15 +392,12 @@ def _covered_letters(
     root: SolvedStructure, walk: Bodies, masses: list[Mass], ground: Ground
 ) -> Iterator[Diagnostic]:
     """Warnings about letters of solids and holes that later bodies lie over."""
-    place = {path: ground.order[m.structure.path] for m in masses for path in (*m.inner, m.structure.path)}
-    above = {child.path: s.path for s in root.walk() for child in s.structures}
+    # The masses of an assembly follow its own.
+    place = {s.path: ground.order[m.structure.path] for m in masses for s in m.structure.walk()}
     for structure in root.walk():
-        holder: str | None = structure.path
-        while holder is not None and holder not in place:
-            holder = above.get(holder)
-        for face in walk.faces.get(structure.path, ()) if holder is not None else ():
-            if all(g.type == LETTERING for g in face.geometries) and holder is not None:
-                share, by = ground.hidden_part(face.section, place[holder])
+        for face in walk.faces.get(structure.path, ()) if structure.path in place else ():
+            if all(g.type == LETTERING for g in face.geometries):
+                share, by = ground.hidden_part(face.section, place[structure.path])
                 if share >= COVERED:
                     yield lettering_note(structure, face.geometries[0], share, by)
 
@@ -469,7 +466,7 @@ def _inked(
 
 
 def _is_seen(
-    styles: dict[str, Style], areas: _Areas, order: Mapping[str, int], found: InnerLoop | CoveredHoles
+    found: InnerLoop | CoveredHoles, styles: dict[str, Style], areas: _Areas, order: Mapping[str, int]
 ) -> bool:
     """Tells whether a face that adds nothing is drawn: by seams, as an area, or on one."""
     own = found.face.geometries
@@ -522,15 +519,12 @@ def _areas(
     """Yields the paths and areas of geometry with a look of its own: what it encloses of its body, or all
     but the holes in it if it lies `aside`, as a veil.
     """
-    network, mass_of = walk.network, {path: m for m in masses for path in (*m.inner, m.structure.path)}
-    plain: dict[str, list[Shape]] = {}  # by body, or drawing: what has its colour
-    for structure in root.walk():
-        for child in structure.structures:  # one without material, too
-            if child.kind == structure.kind == "solid" and structure.path in mass_of:
-                mass_of.setdefault(child.path, mass_of[structure.path])
-        body = mass_of[structure.path].structure if structure.path in mass_of else structure
-        of = (s for s in shapes[structure.path] if not is_filled(s.geometry, structure.kind))
-        plain.setdefault(body.path, []).extend(of)
+    network, mass_of = walk.network, {part.path: m for m in masses for part in united_parts(m.structure)}
+    plain: dict[str, list[Shape]] = {}  # by body: what has its colour
+    for path, m in mass_of.items():
+        of = (s for s in shapes[path] if not is_filled(s.geometry, m.structure.kind))
+        plain.setdefault(m.structure.path, []).extend(of)
+    above: dict[tuple[str, int], Section] = {}  # by body, and how many of these lie above
     for structure in root.walk():
         mass, clip = mass_of.get(structure.path), walk.clips.get(structure.path)
         for shape in shapes[structure.path] if structure.kind != "hole" else ():
@@ -551,10 +545,11 @@ def _areas(
                 else:
                     whole = intersection(whole, mass.section if mass else union([]))
                 section = whole = intersection(whole, clip) if clip is not None else whole
-                body = mass.structure if mass else structure
-                later = [s for s in plain[body.path] if order[s.geometry.path] > place]
-                if later and (over := own_faces(network, later).faces):  # in the colour of the body again
-                    section = difference(section, union_of(over))
+                body = mass.structure.path if mass else ""
+                if later := [s for s in plain.get(body, ()) if order[s.geometry.path] > place]:
+                    if (key := (body, len(later))) not in above:
+                        above[key] = union_of(own_faces(network, later).faces)
+                    section = difference(section, above[key])  # in the colour of the body again
                 region = trace(network, section).region
             if region:
                 look, box = styled(styles[structure.path], g), region_bounds(region)

@@ -159,6 +159,12 @@ def is_inlay(s: SolvedStructure) -> bool:
     return s.kind == "solid" and not s.attributes.keys().isdisjoint(FILLING)
 
 
+def united_parts(body: SolvedStructure) -> Iterator[SolvedStructure]:
+    """Yields the structures that are one body: of a solid all material in it, of another structure itself."""
+    inner = body.walk() if body.kind == "solid" else (body,)
+    return (s for s in inner if s is body or s.kind not in ("hole", "drawing"))
+
+
 def veils(
     root: SolvedStructure, styles: Mapping[str, Style], *, is_inner: bool = False
 ) -> Iterator[tuple[str, Sequence[str], bool]]:
@@ -311,7 +317,8 @@ def layers(root: SolvedStructure) -> Iterator[tuple[SolvedStructure, Sequence[So
     by True, with what is written behind a drawing in it, or a solid in a solid, and so lies over that.
     """
     kinds = {"solid": ("drawing", "solid"), "drawing": ()}.get(root.kind, ("drawing",))
-    inner = [s for s in reversed(root.structures) if s.kind in kinds]
+    last = {s.span: s for s in root.structures if s.kind in kinds}  # of each statement
+    inner = list(reversed(last.values()))
     laid: dict[str, list[SolvedGeometry]] = {root.path: []}
     for g in root.drawn:
         below = next((s for s in inner if _is_before(s, g)), root)

@@ -283,7 +283,6 @@ def _moved(curve: Piece, way: Vec) -> Piece:
 
 
 def _together(regions: Sequence[Region]) -> Region:
-    """Returns regions that do not meet as one."""
     return Region(tuple(face for region in regions for face in region.faces))
 
 

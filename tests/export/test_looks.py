@@ -239,6 +239,14 @@ def test_the_pdf_is_named_after_what_the_program_says_it_is() -> None:
     )
 
 
+def seen(suffix: str, program: str) -> Image.Image:
+    """What is seen of a drawing 100 mm wide, with its margin: ten pixels for each millimetre."""
+    if suffix == ".png":
+        return Image.open(io.BytesIO(written(suffix, program, pixels=1060).data)).convert("RGB")
+    page = PdfDocument(written(suffix, program).data)[0]
+    return page.render(scale=10 / 72 * 25.4).to_pil().convert("RGB")
+
+
 # --- Letters -----------------------------------------------------------------------------------------
 
 LATER = """
@@ -258,9 +266,7 @@ solid a {
 
 
 def test_what_is_written_later_lies_on_top() -> None:
-    picture = Image.open(io.BytesIO(written(".png", LATER, pixels=1060).data)).convert("RGB")
-    page = PdfDocument(written(".pdf", LATER).data)[0].render(scale=10 / 72 * 25.4).to_pil().convert("RGB")
-    for image in (picture, page):
+    for image in (seen(".png", LATER), seen(".pdf", LATER)):
         assert near(image.getpixel((530, 330)), (255, 0, 0))  # the area hides the line before it
         assert near(image.getpixel((530 + 80, 730)), (0, 255, 0))
         assert near(image.getpixel((530, 730)), image.getpixel((530 - 300, 730)))
@@ -284,11 +290,7 @@ assembly a {
 
 @pytest.mark.parametrize("suffix", [".png", ".pdf"])
 def test_nothing_lies_below_what_a_body_of_areas_shows_of_what_is_behind(suffix: str) -> None:
-    made = written(suffix, VEILS, **({"pixels": 1060} if suffix == ".png" else {}))
-    if suffix == ".png":
-        image = Image.open(io.BytesIO(made.data)).convert("RGB")
-    else:
-        image = PdfDocument(made.data)[0].render(scale=10 / 72 * 25.4).to_pil().convert("RGB")
+    image = seen(suffix, VEILS)
     assert near(image.getpixel((230, 530)), (128, 0, 128))
     assert near(image.getpixel((530, 530)), (128, 0, 128))
     assert near(image.getpixel((830, 530)), (255, 0, 0))
@@ -311,9 +313,7 @@ def test_letters_are_filled_and_their_counters_open() -> None:
     assert 'fill="red" fill-rule="evenodd" stroke="none"' in filled
     assert filled.count("Z") == 2
     assert 'fill="none" stroke="red"' in outlined
-    picture = Image.open(io.BytesIO(written(".png", LETTERS, pixels=1060).data)).convert("RGB")
-    page = PdfDocument(written(".pdf", LETTERS).data)[0].render(scale=10 / 72 * 25.4).to_pil().convert("RGB")
-    for image in (picture, page):
+    for image in (seen(".png", LETTERS), seen(".pdf", LETTERS)):
         assert near(image.getpixel((530 - 200, 330)), (255, 255, 0))  # within the O
         assert near(image.getpixel((530 - 200 + 125, 330)), (255, 0, 0))  # its right side
         assert near(image.getpixel((530 + 200, 330)), (255, 255, 0))  # within the outlined I
@@ -374,12 +374,7 @@ assembly a {
 
 @pytest.mark.parametrize("suffix", [".png", ".pdf"])
 def test_a_shadow_is_one_of_all_that_casts_it_and_a_veil_lies_beyond_its_body(suffix: str) -> None:
-    scale, margin = 10, 0.03 * 100
-    picture = written(suffix, SHADOWED, **({"pixels": 1060} if suffix == ".png" else {}))
-    if suffix == ".png":
-        image = Image.open(io.BytesIO(picture.data)).convert("RGB")
-    else:
-        image = PdfDocument(picture.data)[0].render(scale=scale / 72 * 25.4).to_pil().convert("RGB")
+    scale, margin, image = 10, 0.03 * 100, seen(suffix, SHADOWED)
 
     def at(x: float, y: float) -> object:
         return image.getpixel((round((x + 50 + margin) * scale), round((30 + margin - y) * scale)))

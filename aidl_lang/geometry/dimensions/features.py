@@ -230,7 +230,6 @@ def pattern_pitches(group: Sequence[Dimension], tolerance: float) -> Iterator[Di
 
 
 def _levels(values: Sequence[float], tolerance: float) -> list[float]:
-    """Returns the different ones of some numbers, from the smallest."""
     found: list[float] = []
     for value in sorted(values):
         if not found or value - found[-1] > tolerance:
