@@ -22,7 +22,7 @@ demo: $(READY) ## set up, then draw examples/telephone.aidl
 	@$(BIN)/aidl compile examples/telephone.aidl -o build/telephone.svg --quiet
 	@echo "The drawing is in $(CURDIR)/build/telephone.svg; open it in a browser."
 
-test: $(READY) ## run the tests: all but the slow ones, with a share of the examples of each property
+test: $(READY) ## run the tests: all but the slow ones, with a share of the examples of each property and of many cases
 	$(BIN)/python -m pytest -n auto --dist worksteal -m "not slow"
 
 test-all: $(READY) ## run all tests, with TIMES (2) as many examples as are written, others each time
@@ -139,7 +139,7 @@ clean: ## remove what was built; the virtualenv stays
 
 $(SITE)/.ready: requirements-site.lock
 	@$(PYTHON) -m venv $(SITE)
-	@$(SITE)/bin/python -m pip install --quiet --disable-pip-version-check --require-hashes -r requirements-site.lock
+	@$(SITE)/bin/python -m pip install --quiet --disable-pip-version-check --no-compile --require-hashes -r requirements-site.lock
 	@touch $@
 
 # Done again only when the lock or the project file is newer than the last time.
@@ -147,6 +147,6 @@ $(READY): requirements-dev.lock pyproject.toml eval/pyproject.toml dev/pyproject
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "AIDL needs Python 3.11 or newer")'
 	@echo "Setting up $(VENV) …"
 	@test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
-	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes -r requirements-dev.lock
+	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-compile --require-hashes -r requirements-dev.lock
 	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation --editable . --editable eval --editable dev --editable web
 	@touch $@

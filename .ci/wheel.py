@@ -86,6 +86,11 @@ class Installation:
             command = [self.bin / "python", "-m", "pip", *arguments, "--quiet", "--disable-pip-version-check"]
             subprocess.run(command, check=True)
 
+    def put(self, *packages: str | Path) -> None:
+        """Installs packages. What they need is compiled as it is used: all of it would take minutes."""
+        self.pip("install", "--no-compile", *packages)
+        subprocess.run([self.bin / "python", "-m", "compileall", "-q", self.package], check=True)
+
     def run(
         self,
         *arguments: str,
@@ -439,7 +444,7 @@ def installed_and_run(folder: Path) -> Installation:
     here = Installation(folder)
     copy = clean_copy(folder / "copy")
     here.pip("wheel", "--no-deps", "--wheel-dir", folder / "wheel", copy)
-    here.pip("install", *(folder / "wheel").iterdir())
+    here.put(*(folder / "wheel").iterdir())
     before = state(here.package)
     helps(here)
     plainly(here)
@@ -453,13 +458,13 @@ def installed_and_run(folder: Path) -> Installation:
     subprocess.run(command, cwd=copy, check=True, capture_output=True)
     (archive,) = archives.iterdir()
     here.pip("uninstall", "--yes", "aidl-lang")
-    here.pip("install", f"{archive}[{','.join(EXTRAS)}]")
+    here.put(f"{archive}[{','.join(EXTRAS)}]")
     rebuilt = state(here.package)
     missing = sorted(before.keys() - rebuilt.keys())
     here.expect(not missing, f"what is built from the source archive lacks {missing[:5]}")
     with_extras(here)
     here.expect(state(here.package) == rebuilt, "a run writes into the installation")
-    here.pip("install", copy / "eval")
+    here.put(copy / "eval")
     evaluates(here)
     strays = [path.name for name in ("aidl_dev", "dev", "eval") for path in here.package.parent.glob(name)]
     here.expect(not strays, f"what is not the product's is installed: {strays}")

@@ -1,14 +1,18 @@
-"""How much the tests try: `make test` a share of the examples of each property, and the same ones each time;
-`make test-all` all of them, and others each time, and `AIDL_EXAMPLES=20 pytest …` twenty times as many.
+"""How much the tests try: `make test` a share of the examples of each property, the same ones each time, and
+one in four cases of a corpus; `make test-all` all of them, and other examples each time, and
+`AIDL_EXAMPLES=20 pytest …` twenty times as many.
 """
 
 from __future__ import annotations
 
 import os
-from typing import Any
+from collections.abc import Sequence
+from typing import Any, TypeVar
 
+import pytest
 from hypothesis import HealthCheck, settings
 
+T = TypeVar("T")
 _SHARE = 0.15
 _LEAST = 2
 """Examples of any property: the first that Hypothesis tries is the smallest there is, and shows little."""
@@ -25,6 +29,11 @@ def tried(count: int) -> int:
     )
 
 
+def some(cases: Sequence[T], one_in: int = 4) -> Sequence[T]:
+    """Returns the cases that this run tries."""
+    return cases if TRIES_ALL else cases[::one_in]
+
+
 def large(size: int) -> int:
     """Returns how large something is made that is `size` where all is tried."""
     return size if TRIES_ALL else round(size * _SHARE)
@@ -33,6 +42,29 @@ def large(size: int) -> int:
 def tries(count: int, **more: Any) -> settings:
     """Settings of a property of which `count` examples are tried where all are."""
     return settings(max_examples=tried(count), **more)
+
+
+_MANY, _ONE_IN = 12, 4
+_CORPORA = (
+    *(f"tests/{room}/" for room in ("checker", "drawings", "export", "geometry", "ide", "llm", "preview")),
+    *(f"tests/{room}/" for room in ("property", "resolve", "solver", "typecheck")),
+    "dev/tests/",
+    "eval/tests/",
+)
+"""What is tried in shares; specs, pages and commands are tried whole on every run."""
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Marks all but one in four cases as slow, of a test of a corpus that has many."""
+    families: dict[str, list[pytest.Item]] = {}
+    for item in items:
+        if item.nodeid.startswith(_CORPORA) and item.get_closest_marker("slow") is None:
+            families.setdefault(item.nodeid.partition("[")[0], []).append(item)
+    for cases in families.values():
+        if len(cases) > _MANY:
+            for number, case in enumerate(cases):
+                if number % _ONE_IN:
+                    case.add_marker(pytest.mark.slow)
 
 
 settings.register_profile(

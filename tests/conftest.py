@@ -1,5 +1,6 @@
 """Settings for all tests."""
 
+import gc
 import os
 
 # Tests run in as many processes as there are cores: threads of their own would be in each other's way.
@@ -7,8 +8,15 @@ import os
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 from aidl_lang.explaining import trials
-from tests import amount as amount  # how many examples are tried
 from tests import interrupts as interrupts
+from tests.amount import pytest_collection_modifyitems as pytest_collection_modifyitems
 
 # What a message says hangs on the program here, and not on how busy the machine is.
 trials.SECONDS, trials.LONGEST = 10.0, 20.0
+
+
+def pytest_collection_finish() -> None:
+    """What was loaded by now stays: it is not searched for garbage again and again."""
+    gc.collect()
+    gc.freeze()
+    gc.set_threshold(50_000, 20, 20)

@@ -17,7 +17,7 @@ from aidl_lang.parser import parse
 from aidl_lang.syntax import tables
 from aidl_lang.syntax.automaton import Automaton
 from aidl_lang.syntax.tables import tokenize
-from tests.amount import TRIES_ALL
+from tests.amount import some
 from tests.grammars.engines import all_programs
 
 GRAMMAR = resource("grammar/aidl.lark").read_text(encoding="utf-8")
@@ -43,9 +43,10 @@ class Trees:
 def test_what_was_kept_reads_as_what_is_built() -> None:
     """The same trees as by Lark from the grammar, with its lexer that knows what may stand where."""
     built = Lark(GRAMMAR, parser="lalr", start="module", maybe_placeholders=False)
-    programs = [text for text in all_programs().values() if not parse(SourceFile("", text)).diagnostics]
-    assert len(programs) > 500
-    for text in programs[:: 1 if TRIES_ALL else 5]:
+    programs = some([*all_programs().values()], 8)
+    right = [text for text in programs if not parse(SourceFile("", text)).diagnostics]
+    assert len(right) > 60
+    for text in right:
         automaton = Automaton(Trees())
         assert all(map(automaton.feed, tokenize(SourceFile("", text)).tokens))
         assert automaton.made == built.parse(text)

@@ -13,6 +13,7 @@ from aidl_lang.checking.resolve import resolve
 from aidl_lang.common import resources
 from aidl_lang.common.source import SourceFile
 from aidl_lang.syntax import ast
+from aidl_lang.syntax.tables import load_tables
 from aidl_lang.typecheck import check
 
 SMALL = """
@@ -28,6 +29,7 @@ solid washer(outer = 3) { rim = circle(radius: outer) }
 @pytest.fixture
 def checkout(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A checkout in which nothing was made yet, with a small library."""
+    load_tables()  # of the grammar, which is not in that checkout
     stdlib = tmp_path / "stdlib"
     stdlib.mkdir()
     (stdlib / "small.aidl").write_text(SMALL)
