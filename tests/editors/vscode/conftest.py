@@ -35,13 +35,13 @@ def started(vsix: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Wi
         pytest.skip("AIDL_CODE_SERVER does not name a folder with VS Code (`make test-vscode` makes one)")
     sync_api = pytest.importorskip("playwright.sync_api")
     from tests.editors.vscode.window import PATIENCE, Window, served
+    from tests.preview.conftest import ARGUMENTS, CHROMIUM
 
-    options = ["--no-sandbox", "--disable-gpu", "--disable-background-networking"]
     with (
         served(Installed(Path(FOLDER)), vsix, tmp_path_factory.mktemp("code")) as (address, folder),
         sync_api.sync_playwright() as playwright,
     ):
-        browser = playwright.chromium.launch(executable_path="/usr/bin/chromium", args=options)
+        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=ARGUMENTS)
         page = browser.new_page(viewport={"width": 1500, "height": 900})
         # Nothing outside this machine is asked for: no extension gallery, no telemetry.
         page.route(lambda url: "//127.0.0.1:" not in url, lambda route: route.abort())
