@@ -12,12 +12,11 @@ from contextlib import suppress
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import Any, Generic, Protocol, TypeVar
+from typing import Any, Protocol, TypeVar
 
 from pygls.exceptions import JsonRpcException
 
 from aidl_lang.common import resources
-from aidl_lang.common.records import record
 from aidl_lang.common.running import Cancelled, cancelled_when, checkpoint
 from aidl_lang.common.world import MemoryWorld, is_data
 from aidl_lang.pipeline import Settings
@@ -34,15 +33,8 @@ from aidl_lang.tools.lsp.documents import Document, Documents, VersionedView
 T = TypeVar("T")
 
 
-@record(frozen=False, eq=False)
-class Job(Generic[T]):
-    """A piece of work: `work` runs in the lane's thread, `done` then on the loop with the result."""
-
-    key: Hashable
-    work: Callable[[], T]
-    done: Callable[[Future[T]], None]
-    dropped: Callable[[], None] = lambda: None
-    """Called instead of `done` if newer work of the same key replaces it before it has begun."""
+class Dropped(Cancelled):
+    """Raised in place of a result where newer work of the same key came before this had begun."""
 
 
 class Lane:
@@ -51,26 +43,31 @@ class Lane:
     def __init__(self, name: str, loop: asyncio.AbstractEventLoop, finished: Callable[[], None]) -> None:
         self._executor = ThreadPoolExecutor(max_workers=1, thread_name_prefix=name)
         self._loop, self._finished = loop, finished
-        self._waiting: dict[Hashable, Job[Any]] = {}
-        self.running: Job[Any] | None = None
+        self._waiting: dict[Hashable, tuple[Callable[[], Any], asyncio.Future[Any]]] = {}
+        self.is_running = False
         self._is_closed = False
 
     def waits(self, key: Hashable) -> bool:
         return key in self._waiting
 
-    def put(self, job: Job[Any], first: bool = False) -> None:
-        """Queues work, last or as the next."""
-        self.drop(job.key)
+    def put(self, key: Hashable, work: Callable[[], T], first: bool = False) -> asyncio.Future[T]:
+        """Queues work, last or as the next. Returns what will have its result."""
+        self.drop(key)
+        result: asyncio.Future[T] = self._loop.create_future()
+        result.add_done_callback(lambda done: done.cancelled() or done.exception())  # which is then no news
         if self._is_closed:
-            job.dropped()
-            return
-        self._waiting = {job.key: job, **self._waiting} if first else {**self._waiting, job.key: job}
-        self._start()
+            result.set_exception(Dropped())
+        else:
+            put = {key: (work, result)}
+            self._waiting = put | self._waiting if first else self._waiting | put
+            self._start()
+        return result
 
     def drop(self, key: Hashable) -> None:
         """Drops the work waiting under a key; running work goes on."""
-        if (older := self._waiting.pop(key, None)) is not None:
-            older.dropped()
+        _, result = self._waiting.pop(key, (None, None))
+        if result is not None and not result.done():
+            result.set_exception(Dropped())
 
     def close(self) -> None:
         """Drops waiting work and begins nothing more."""
@@ -80,24 +77,25 @@ class Lane:
         self._executor.shutdown(wait=False, cancel_futures=True)
 
     def _start(self) -> None:
-        if self.running is None and self._waiting:
-            job = self._waiting.pop(next(iter(self._waiting)))
-            self.running = job
-            self._executor.submit(job.work).add_done_callback(partial(self._hand_over, job))
+        if not self.is_running and self._waiting:
+            work, result = self._waiting.pop(next(iter(self._waiting)))
+            self.is_running = True
+            self._executor.submit(work).add_done_callback(partial(self._hand_over, result))
 
-    def _hand_over(self, job: Job[Any], future: Future[Any]) -> None:
+    def _hand_over(self, result: asyncio.Future[Any], future: Future[Any]) -> None:
         """Passes a result to the loop, from the lane's thread or whichever cancels."""
         with suppress(RuntimeError):  # the loop has ended: nobody waits for this any more
-            self._loop.call_soon_threadsafe(self._finish, job, future)
+            self._loop.call_soon_threadsafe(self._finish, result, future)
 
-    def _finish(self, job: Job[Any], future: Future[Any]) -> None:
-        self.running = None
-        try:
-            if not future.cancelled():
-                job.done(future)
-        finally:
-            self._start()
-            self._finished()
+    def _finish(self, result: asyncio.Future[Any], future: Future[Any]) -> None:
+        self.is_running = False
+        if not (future.cancelled() or result.done()):
+            if (error := future.exception()) is not None:
+                result.set_exception(error)
+            else:
+                result.set_result(future.result())
+        self._loop.call_soon(self._start)  # once the result was taken note of
+        self._finished()
 
 
 FAILED = -32803
@@ -246,15 +244,15 @@ class Runner:
         self.limits, self.delay = limits, 0.0
         self.active: Document | None = None
         """What the user is at: it goes first."""
-        self._tidier = Tidier(loop, lambda: any((self.looking.running, self.solving.running)))
+        self._tidier = Tidier(loop, lambda: self.looking.is_running or self.solving.is_running)
         self.looking = Lane("looking", loop, self._tidier.note)
         self.solving = Lane("solving", loop, self._tidier.note)
         self._loop, self._is_closing = loop, False
 
     def warm_up(self) -> None:
         """Loads what the first run and the first questions need while nobody waits for it."""
-        self.solving.put(Job("first run", lambda: run(_example()), lambda future: None))
-        self.solving.put(Job("first questions", _ask_something, lambda future: None))
+        self.solving.put("first run", lambda: run(_example()))
+        self.solving.put("first questions", _ask_something)
 
     def renew(self, document: Document, *, active: bool = False) -> None:
         """Checks and runs a document after a change of its text, or of one that it imports."""
@@ -263,14 +261,9 @@ class Runner:
         document.serial += 1
         version, serial = document.version, document.serial
         world = self.workspace.world(document.path)
-        self.looking.put(
-            Job(
-                document,
-                partial(look, document.path, document.text, world, self.limits),
-                partial(self._looked, document, version, serial),
-            ),
-            first=active,
-        )
+        work = partial(look, document.path, document.text, world, self.limits)
+        looked = self.looking.put(document, work, first=active)
+        looked.add_done_callback(partial(self._looked, document, version, serial))
 
     def renew_dependents(self, path: Path) -> None:
         """Renews the documents that use a file, after a change of it on disk or in the editor."""
@@ -283,27 +276,13 @@ class Runner:
         self, key: Hashable, function: Callable[[], T], is_unwanted: Callable[[], bool], *, first: bool = True
     ) -> T:
         """Returns a result from the solving thread, before waiting work or behind it; cancels older ones."""
-        found: asyncio.Future[T] = self._loop.create_future()
 
         def work() -> T:
             with cancelled_when(lambda: self._is_closing or is_unwanted() or self.solving.waits(key)):
                 checkpoint()
                 return function()
 
-        def done(future: Future[T]) -> None:
-            if found.done():
-                return
-            if (error := future.exception()) is not None:
-                found.set_exception(error)
-            else:
-                found.set_result(future.result())
-
-        def dropped() -> None:
-            if not found.done():
-                found.set_exception(Cancelled())
-
-        self.solving.put(Job(key, work, done, dropped), first=first)
-        return await found
+        return await self.solving.put(key, work, first=first)
 
     def forget(self, document: Document) -> None:
         """Drops the work of a closed document."""
@@ -319,16 +298,17 @@ class Runner:
         self.solving.close()
         self._tidier.close()
 
-    def _looked(self, document: Document, version: int, serial: int, future: Future[View]) -> None:
-        if not document.is_open:
+    def _looked(self, document: Document, version: int, serial: int, looked: asyncio.Future[View]) -> None:
+        error = looked.exception()
+        if not document.is_open or isinstance(error, Dropped):
             return
         document.seen = serial
-        if (error := future.exception()) is not None:
+        if error is not None:
             document.solved = serial  # nothing will come of this text
             self.listener.crashed(error)
         else:
             drawn = document.ran.view.drawn if document.ran is not None else None
-            view = replace(future.result(), drawn=drawn)
+            view = replace(looked.result(), drawn=drawn)
             document.newest = VersionedView(view, version, serial)
             if document.path.is_relative_to(resources.resource("stdlib")):
                 document.solved = serial  # it is of the library, and no program
@@ -344,14 +324,9 @@ class Runner:
 
     def _solve(self, document: Document, known: VersionedView) -> None:
         began = self._loop.time()
-        self.solving.put(
-            Job(
-                document,
-                partial(self._run, document, known, document.was_given_up),
-                partial(self._ran, document, known),
-            ),
-            first=document is self.active,
-        )
+        work = partial(self._run, document, known, document.was_given_up)
+        ran = self.solving.put(document, work, first=document is self.active)
+        ran.add_done_callback(partial(self._ran, document, known))
         self._loop.call_at(began + PATIENCE, self._tell_what_is_known, document, known)
 
     def _tell_what_is_known(self, document: Document, known: VersionedView) -> None:
@@ -374,20 +349,21 @@ class Runner:
             _ = view.diagnostics  # worked out where it can be given up: the loop's thread reads them
             return view
 
-    def _ran(self, document: Document, known: VersionedView, future: Future[View]) -> None:
-        if not document.is_open or self._is_closing:
+    def _ran(self, document: Document, known: VersionedView, ran: asyncio.Future[View]) -> None:
+        error = ran.exception()
+        if not document.is_open or self._is_closing or isinstance(error, Dropped):
             return
-        if future.cancelled() or isinstance(future.exception(), Cancelled):
+        if isinstance(error, Cancelled):
             document.was_given_up = True
             if document.serial == known.serial:  # it made way for what is more urgent
                 self._solve(document, known)
             return
         document.was_given_up = False
         document.solved = known.serial
-        if (error := future.exception()) is not None:
+        if error is not None:
             self.listener.crashed(error)
         else:
-            document.ran = replace(known, view=future.result())
+            document.ran = replace(known, view=ran.result())
             newest = document.newest
             if newest is None or newest.serial == known.serial:
                 document.newest = document.ran
