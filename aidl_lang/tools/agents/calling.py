@@ -19,7 +19,7 @@ from typing import Annotated, Any, Literal, Union, get_args, get_origin, get_typ
 
 from aidl_lang.common.diagnostics import AidlError, Diagnostic
 from aidl_lang.common.names import nearest
-from aidl_lang.common.prose import did_you_mean
+from aidl_lang.common.prose import did_you_mean, shortened
 from aidl_lang.common.records import record
 from aidl_lang.common.render import compact
 from aidl_lang.tools.agents.results import Result, data, findings, shown_fields
@@ -271,8 +271,8 @@ def _bound(tool: Tool, arguments: Mapping[str, object]) -> dict[str, object]:
         try:
             taken[name] = _converted(value, known[name].kind)
         except _MisfitError as misfit:
-            wanted, shown = misfit.args[0], json.dumps(misfit.args[1])
-            shown = shown if len(shown) <= _SHOWN else shown[: _SHOWN - 1] + "…"
+            wanted, value = misfit.args
+            shown = shortened(json.dumps(value), _SHOWN)
             message = f"`{name}` of `{tool.name}` takes {wanted}, not `{shown}`"
             raise refusal("E0944", message, known[name].description) from None
     return taken

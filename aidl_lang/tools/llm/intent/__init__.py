@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Collection, Iterator, Sequence
 from dataclasses import replace
 
-from aidl_lang.common.prose import counted, listed
+from aidl_lang.common.prose import counted, listed, shortened
 from aidl_lang.common.records import record
 from aidl_lang.common.source import SourceFile
 from aidl_lang.common.world import World
@@ -100,7 +100,7 @@ def request(losses: Sequence[Loss]) -> str:
 
 def quoted(text: str) -> str:
     """Returns a statement between backticks, shortened."""
-    return f"`{text if len(text) <= _QUOTED else text[: _QUOTED - 1] + '…'}`"
+    return f"`{shortened(text, _QUOTED)}`"
 
 
 def named(item: Item, inventory: Inventory) -> str:

@@ -19,6 +19,7 @@ from typing import IO, Protocol
 from urllib.parse import urlsplit
 
 from aidl_lang.common.diagnostics import has_errors
+from aidl_lang.common.prose import shortened
 from aidl_lang.common.records import record
 from aidl_lang.common.source import SourceFile
 from aidl_lang.parser import parse
@@ -249,8 +250,7 @@ def one_line(value: object, secret: str = "") -> str:
     text = words(value)
     if secret:
         text = text.replace(secret, "…")
-    line = " ".join("".join(c if c.isprintable() else " " for c in text).split())
-    return line if len(line) <= _LINE else line[: _LINE - 1] + "…"
+    return shortened(" ".join("".join(c if c.isprintable() else " " for c in text).split()), _LINE)
 
 
 def count(value: object) -> int | None:
