@@ -12,21 +12,23 @@ from contextlib import suppress
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import Any, Protocol, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from pygls.exceptions import JsonRpcException
 
 from aidl_lang.common import resources
 from aidl_lang.common.running import Cancelled, cancelled_when, checkpoint
 from aidl_lang.common.world import MemoryWorld, is_data
-from aidl_lang.pipeline import Settings
 from aidl_lang.syntax import ast
 from aidl_lang.tools.ide.completion import complete
 from aidl_lang.tools.ide.hover import hover
 from aidl_lang.tools.ide.preview import preview
 from aidl_lang.tools.ide.references import CannotError
-from aidl_lang.tools.ide.workspace import SETTINGS, View, Workspace, look, run
-from aidl_lang.tools.lsp.documents import Document, Documents, VersionedView
+from aidl_lang.tools.ide.workspace import SETTINGS, View, look, run
+from aidl_lang.tools.lsp.documents import Document, VersionedView
+
+if TYPE_CHECKING:
+    from aidl_lang.tools.lsp.server import Server
 
 # --- Work off the message thread: single threads with queues.
 
@@ -216,32 +218,12 @@ PATIENCE = 0.2
 """Seconds of solving after which the results of checking are published."""
 
 
-class Listener(Protocol):
-    """Receives results, on the loop's thread."""
-
-    def took_long(self, document: Document) -> None:
-        """Called when the results of checking are all that is known for now."""
-
-    def solved(self, document: Document) -> None:
-        """Called when there is a new outcome."""
-
-    def crashed(self, error: BaseException) -> None:
-        """Called when work ended with an unexpected error."""
-
-
 class Runner:
-    """Checks and runs documents. All methods belong to the loop's thread."""
+    """Checks and runs the documents of a server. All methods belong to the loop's thread."""
 
-    def __init__(
-        self,
-        documents: Documents,
-        workspace: Workspace,
-        listener: Listener,
-        loop: asyncio.AbstractEventLoop,
-        limits: Settings = LIMITS,
-    ) -> None:
-        self.documents, self.workspace, self.listener = documents, workspace, listener
-        self.limits, self.delay = limits, 0.0
+    def __init__(self, server: Server, loop: asyncio.AbstractEventLoop) -> None:
+        self._server, self.documents, self.workspace = server, server.documents, server.open_files
+        self.limits, self.delay = server.limits, 0.0
         self.active: Document | None = None
         """What the user is at: it goes first."""
         self._tidier = Tidier(loop, lambda: self.looking.is_running or self.solving.is_running)
@@ -305,7 +287,7 @@ class Runner:
         document.seen = serial
         if error is not None:
             document.solved = serial  # nothing will come of this text
-            self.listener.crashed(error)
+            self._server.crashed(error)
         else:
             drawn = document.ran.view.drawn if document.ran is not None else None
             view = replace(looked.result(), drawn=drawn)
@@ -331,7 +313,7 @@ class Runner:
 
     def _tell_what_is_known(self, document: Document, known: VersionedView) -> None:
         if document.is_open and document.seen == known.serial > document.solved:
-            self.listener.took_long(document)
+            self._server.took_long(document)
 
     def _run(self, document: Document, known: VersionedView, is_patient: bool) -> View:
         began = time.monotonic()
@@ -361,7 +343,7 @@ class Runner:
         document.was_given_up = False
         document.solved = known.serial
         if error is not None:
-            self.listener.crashed(error)
+            self._server.crashed(error)
         else:
             document.ran = replace(known, view=ran.result())
             newest = document.newest
@@ -369,7 +351,7 @@ class Runner:
                 document.newest = document.ran
             else:
                 document.newest = replace(newest, view=replace(newest.view, drawn=document.ran.view.drawn))
-            self.listener.solved(document)
+            self._server.solved(document)
         document.tell()
 
 
