@@ -150,7 +150,12 @@ _WALK = "aidl/ranges"
 _METHODS = _EDITS | {_ATTEMPT, _WALK, "aidl/preview", "aidl/export", "aidl/exports"}
 """Requests that a page may send to the server."""
 _TYPING = "aidl/type"
-OWN = frozenset({"aidl/undo", "aidl/redo", "aidl/save", "aidl/takeFile"})
+OWN: Mapping[str, Callable[[Manuscript, Json], None]] = {
+    "aidl/undo": lambda text, _: text.undo(),
+    "aidl/redo": lambda text, _: text.redo(),
+    "aidl/save": lambda text, given: text.save(anyway=given.get("anyway") is True),
+    "aidl/takeFile": lambda text, _: text.take_file(),
+}
 """Requests about the text, which are answered here."""
 _CLIENT: Json = {
     "general": {"positionEncodings": ["utf-16"]},
@@ -302,7 +307,7 @@ class Host:
             return
         if request.method == _TYPING:
             self._spawn(self._answer(page, request, partial(self._type, page)))
-        elif request.method not in _METHODS | OWN:
+        elif request.method not in _METHODS and request.method not in OWN:
             page.refuse(request, ErrorCodes.MethodNotFound, "pages cannot ask for this")
         elif request.method == _ATTEMPT:
             if page.attempt is not None:
@@ -335,7 +340,7 @@ class Host:
 
     def _forward(self, page: Page, request: Request, then: Callable[[], None]) -> None:
         if request.method in OWN:
-            self._spawn(self._answer(page, request, self._changes[request.method], then))
+            self._spawn(self._answer(page, request, partial(OWN[request.method], self.text), then))
             return
 
         def answered(message: Json) -> None:
@@ -346,15 +351,6 @@ class Host:
         self._ask(request.method, {**request.params, "viewer": page.name}, answered)
 
     # --- The text
-
-    @property
-    def _changes(self) -> dict[str, Callable[[Json], None]]:
-        return {
-            "aidl/undo": lambda _: self.text.undo(),
-            "aidl/redo": lambda _: self.text.redo(),
-            "aidl/save": lambda given: self.text.save(anyway=given.get("anyway") is True),
-            "aidl/takeFile": lambda _: self.text.take_file(),
-        }
 
     async def _answer(
         self,

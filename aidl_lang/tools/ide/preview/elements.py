@@ -7,6 +7,7 @@ import re
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import fields, is_dataclass, replace
+from functools import cache
 from pathlib import Path
 from typing import Any, TypeAlias
 
@@ -158,8 +159,8 @@ class Writer:
 
     def __init__(self, view: View, uri_of: Callable[[Path], str] = Path.as_uri) -> None:
         self._view, self._uri_of = view, uri_of
-        self._positions: dict[SourceFile, Positions] = {}
-        self._uris: dict[SourceFile, str | None] = {}
+        self._positions = cache(lambda source: Positions(source.text))
+        self._uri = cache(self._found)
 
     def preview(self, preview: Preview, version: int) -> Json:
         """Returns the preview; numbers without a value are null."""
@@ -175,21 +176,14 @@ class Writer:
         return {"range": self.range(span), "uri": uri}
 
     def range(self, span: Span) -> Json:
-        positions = self.positions(span.source)
+        positions = self._positions(span.source)
         ends = (positions.position(offset) for offset in (span.start, span.end))
         start, end = ({"line": line, "character": character} for line, character in ends)
         return {"start": start, "end": end}
 
-    def positions(self, source: SourceFile) -> Positions:
-        if source not in self._positions:
-            self._positions[source] = Positions(source.text)
-        return self._positions[source]
-
-    def _uri(self, source: SourceFile) -> str | None:
-        if source not in self._uris:
-            path = None if self._view.is_library(source) else self._view.file(source)
-            self._uris[source] = None if path is None else self._uri_of(path)
-        return self._uris[source]
+    def _found(self, source: SourceFile) -> str | None:
+        path = None if self._view.is_library(source) else self._view.file(source)
+        return None if path is None else self._uri_of(path)
 
     def _fields(self, made: Any) -> Json:
         """Returns what a record says, by the names of its fields; its span as range and file."""
