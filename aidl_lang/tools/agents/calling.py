@@ -11,7 +11,7 @@ import asyncio
 import dataclasses
 import inspect
 import json
-import math
+import sys
 from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property
 from types import NoneType, UnionType
@@ -226,6 +226,7 @@ def _is_union(kind: Any) -> bool:
 _SHOWN = 60
 """Most characters of a value that a message quotes."""
 _PAIR = {"name", "value"}
+_LARGEST = sys.float_info.max
 
 
 @record()
@@ -326,18 +327,11 @@ def _primitive(value: object, kind: Any) -> object:
         if not isinstance(value, bool):
             raise _MisfitError("true or false", value)
         return value
-    if isinstance(value, bool) or not isinstance(value, int | float) or not _is_finite(value):
+    if isinstance(value, bool) or not isinstance(value, int | float) or not abs(value) <= _LARGEST:
         raise _MisfitError("a number", value)
     if kind is int and value != int(value):
         raise _MisfitError("a whole number", value)
     return int(value) if kind is int else float(value)
-
-
-def _is_finite(value: float) -> bool:
-    try:
-        return math.isfinite(value)
-    except OverflowError:  # a whole number of hundreds of digits
-        return False
 
 
 def _text(value: object) -> str:

@@ -381,7 +381,7 @@ def _item(each: Completion, asked: Asked, snippets: bool, data: dict[str, object
         sort_text=f"{each.rank:04}",
         insert_text_format=snippet if is_snippet else types.InsertTextFormat.PlainText,
         text_edit=types.TextEdit(edit.range(each.span), each.text if is_snippet else each.plain),
-        additional_text_edits=[edit.edit(e) for e in each.extra] or None,
+        additional_text_edits=edit.edits(each.extra) or None,
         data=data,
     )
 
@@ -390,7 +390,7 @@ def _overload(overload: OverloadHelp) -> types.SignatureInformation:
     positions = Positions(overload.label)  # which are of UTF-16 here, whatever was agreed for texts
     parameters = []
     for parameter in overload.parameters:
-        start, end = (positions.length(0, offset) for offset in parameter.place)
+        (_, start), (_, end) = map(positions.position, parameter.place)  # of the one line
         about = _markdown(parameter.about) if parameter.about else None
         parameters.append(types.ParameterInformation((start, end), about))
     about = _markdown(overload.about) if overload.about else None

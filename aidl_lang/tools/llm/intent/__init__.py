@@ -48,16 +48,6 @@ class Loss:
         return self.fate is Fate.FEWER
 
     @property
-    def path(self) -> str:
-        """The dotted path of the structure that held it; "" for the outermost."""
-        return dotted(self.item.home)
-
-    @property
-    def text(self) -> str:
-        """The author's words, on one line; for a structure its name."""
-        return self.item.text
-
-    @property
     def phrase(self) -> str:
         """The loss in a sentence without its full stop."""
         if self.fate is Fate.FEWER:

@@ -346,7 +346,8 @@ class Command:
         except subprocess.TimeoutExpired:
             raise self._silence(said_beside) from None
         if code:
-            raise ProviderError("E0936", f"`{self.name}` ended with {_ending(code)}", *_last(said_beside))
+            ending = f"exit code {code}" if code > 0 else signal.Signals(-code).name
+            raise ProviderError("E0936", f"`{self.name}` ended with {ending}", *_last(said_beside))
         if not draft.text.strip():
             raise self._unusable("it wrote nothing", said_beside)
         return self._finished(draft, hear)
@@ -436,10 +437,6 @@ def _parsed(text: str) -> object:
         return json.loads(text)
     except (ValueError, RecursionError):  # a reply may be anything
         return None
-
-
-def _ending(code: int) -> str:
-    return f"exit code {code}" if code > 0 else signal.Signals(-code).name
 
 
 def _last(said: bytes) -> list[str]:
