@@ -59,10 +59,6 @@ class Tool:
         return self.function.__name__
 
     @property
-    def title(self) -> str:
-        return self.name.replace("_", " ").capitalize()
-
-    @property
     def description(self) -> str:
         return " ".join((self.function.__doc__ or "").split())
 
@@ -121,7 +117,7 @@ def for_mcp() -> list[Json]:
     return [
         {
             "name": tool.name,
-            "title": tool.title,
+            "title": tool.name.replace("_", " ").capitalize(),
             "description": tool.description,
             "inputSchema": tool.arguments(),
             "outputSchema": tool.result,

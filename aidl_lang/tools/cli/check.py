@@ -62,7 +62,7 @@ def _walks(name: str, job: SweepJob, compiled: Compiled, in_pairs: bool) -> _Swe
 
 
 def _progress(what: str, done: int, count: int) -> None:
-    pass_by(f"{done} of {count} {what}" if done < count else "")
+    pass_by(f"{done} of {count} {what}")
 
 
 def _summary(sweep: Sweep) -> str:

@@ -484,6 +484,6 @@ def _plain(value: Any, kind: Any) -> Any:
 
 
 _converter = cattrs.Converter()
-_converter.register_structure_hook_func(
-    (str, bool, int, float, Value, Values, Words, Texts, Point).__contains__, _plain
-)
+for _kind in (str, bool, int, float):
+    _converter.register_structure_hook(_kind, _plain)
+_converter.register_structure_hook_func((Value, Values, Words, Texts, Point).__contains__, _plain)

@@ -13,7 +13,6 @@ from functools import partial
 from itertools import count
 from typing import Any, TypeAlias, TypeVar
 
-from lsprotocol import types
 from pygls.exceptions import (
     JsonRpcException,
     JsonRpcInvalidParams,
@@ -411,11 +410,8 @@ class _Requests:
             return await self._apply(asked, made, label)
 
     async def _apply(self, asked: Asked, edits: Sequence[Edit], label: str) -> Json:
-        params = types.ApplyWorkspaceEditParams(asked.convert.change(edits), label)
-        answer = await self.server.workspace_apply_edit_async(params)
-        if answer.applied:
-            return {"applied": True}
-        return _not_applied(answer.failure_reason or "the editor did not change the text")
+        reason = await self.server.apply(asked, edits, label)
+        return _not_applied(reason) if reason else {"applied": True}
 
 
 def _worded(diagnostic: Diagnostic) -> str:

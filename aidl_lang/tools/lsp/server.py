@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import json
 import logging
-from collections.abc import Callable, Coroutine
+from collections.abc import Callable, Coroutine, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any, TypeVar
@@ -25,6 +25,7 @@ from pygls.protocol import (
     lsp_method,
 )
 
+from aidl_lang.common.diagnostics import Edit
 from aidl_lang.common.records import record
 from aidl_lang.pipeline import Settings as Limits
 from aidl_lang.tools.ide.workspace import Project, Unit, View, Workspace
@@ -324,6 +325,12 @@ class Server(LanguageServer):
     def asked_now(self, document: documents.Document, known: documents.VersionedView) -> Asked:
         convert = self.converter(known.view, document.uri)
         return Asked(document.uri, known, convert, self.settings, self.project, self.can)
+
+    async def apply(self, asked: Asked, edits: Sequence[Edit], label: str) -> str:
+        """Has the client make edits of a program; returns why it does not, or ""."""
+        params = types.ApplyWorkspaceEditParams(asked.convert.change(edits), label)
+        answer = await self.workspace_apply_edit_async(params)
+        return "" if answer.applied else answer.failure_reason or "the editor did not change the text"
 
     def answers_to(
         self,

@@ -6,7 +6,7 @@ import asyncio
 import json
 import re
 from collections import deque
-from collections.abc import Callable, Coroutine, Iterable, Mapping
+from collections.abc import Callable, Coroutine, Iterable, Mapping, Sequence
 from functools import partial
 from itertools import count
 from pathlib import Path
@@ -17,11 +17,12 @@ from lsprotocol.types import ErrorCodes, LSPErrorCodes, MessageType
 from pygls.exceptions import JsonRpcInvalidParams
 
 from aidl_lang.common.diagnostics import Edit
-from aidl_lang.common.source import SourceFile, Span
+from aidl_lang.common.source import SourceFile
 from aidl_lang.tools.ide.references import CannotError
 from aidl_lang.tools.ide.workspace import SETTINGS, Positions
 from aidl_lang.tools.lsp.documents import Document, read
 from aidl_lang.tools.lsp.serve import make
+from aidl_lang.tools.lsp.server import Asked
 from aidl_lang.tools.preview import files
 from aidl_lang.tools.preview.files import Manuscript
 
@@ -157,10 +158,7 @@ OWN: Mapping[str, Callable[[Manuscript, Json], None]] = {
     "aidl/takeFile": lambda text, _: text.take_file(),
 }
 """Requests about the text, which are answered here."""
-_CLIENT: Json = {
-    "general": {"positionEncodings": ["utf-16"]},
-    "workspace": {"applyEdit": True, "workspaceEdit": {"documentChanges": True}},
-}
+_CLIENT: Json = {"general": {"positionEncodings": ["utf-16"]}}
 
 
 class Host:
@@ -176,6 +174,7 @@ class Host:
         self.uri = path.as_uri()
         self.pages: list[Page] = []
         self.server = make(SETTINGS)
+        self.server.apply = self._apply  # type: ignore[method-assign]  # no client does it
         self._gone = Page()
         """carries out the edits of pages that left"""
         self._version = 0
@@ -403,8 +402,6 @@ class Host:
         params: Json = message.get("params") or {}
         if method is None:
             self._asked.pop(message["id"])(message)
-        elif "id" in message:
-            self._spawn(self._reply(message["id"], params if method == "workspace/applyEdit" else None))
         elif method == "aidl/previewChanged":
             self._rested()
             for page in (each for each in self.pages if each.name == params["viewer"]):
@@ -414,53 +411,36 @@ class Host:
         elif method == "window/showMessage":
             self._tell_all(message)
 
-    async def _reply(self, number: object, edit: Json | None) -> None:
-        made = None if edit is None else await self._edited(edit)
-        self._receive({"id": number, "result": made})
-
-    async def _edited(self, params: Json) -> Json:
-        label, changes = params.get("label") or "Change", params["edit"]["documentChanges"]
-        uri_of = self.server.documents.uri_of
+    async def _apply(self, asked: Asked, edits: Sequence[Edit], label: str) -> str:
+        """Makes the edits that the server asks for; returns why it cannot, or ""."""
         async with self._turn:
-            known = {uri_of(path): (path, source) for path, source in self._sources().items()}
             try:
-                await asyncio.to_thread(self._edit, label, changes, known)
+                await asyncio.to_thread(self._edit, asked, edits, label)
             except CannotError as reason:
-                return {"applied": False, "failureReason": str(reason)}
+                return str(reason)
         await self.noticed()
-        return {"applied": True}
+        return ""
 
-    def _edit(self, label: str, changes: list[Json], known: Mapping[str, tuple[Path, SourceFile]]) -> None:
+    def _edit(self, asked: Asked, edits: Sequence[Edit], label: str) -> None:
         """Edits each file as a whole or not at all. Raises CannotError."""
+        by_source: dict[SourceFile, list[Edit]] = {}
+        for edit in edits:
+            by_source.setdefault(edit.span.source, []).append(edit)
         own: SourceFile | None = None
-        edits: list[Edit] = []
         others = {}
-        for change in changes:
-            path, source = known.get(change["textDocument"]["uri"], (None, None))
-            if path is None or source is None:
+        for source, made in by_source.items():
+            path = asked.view.file(source)
+            if path is None or asked.view.is_library(source):
                 raise CannotError("this cannot be changed from here")
-            if change["textDocument"]["version"] not in (None, self._version):
-                raise CannotError("the text has changed meanwhile")
-            made = _edits(source, change["edits"])
-            if path == self.path:
-                own, edits = source, made
-            else:
+            if path != self.path:
                 others[path] = files.rewritten(path, source, made)
-        self.text.set(label, own, edits, others)
+            elif asked.known.version == self._version:
+                own = source
+            else:
+                raise CannotError("the text has changed meanwhile")
+        self.text.set(label, own, by_source.get(own, []) if own is not None else [], others)
 
     def _spawn(self, work: Coroutine[Any, Any, None]) -> None:
         task = self._loop.create_task(work)
         self._tasks.add(task)
         task.add_done_callback(self._tasks.discard)
-
-
-def _edits(source: SourceFile, edits: Iterable[Json]) -> list[Edit]:
-    positions = Positions(source.text)
-
-    def offset(place: Json) -> int:
-        return positions.offset(place["line"], place["character"])
-
-    return [
-        Edit(Span(source, offset(e["range"]["start"]), offset(e["range"]["end"])), e["newText"])
-        for e in edits
-    ]
