@@ -85,7 +85,6 @@ def shortened(document: Json, most: int) -> tuple[Json, str | None]:
 
 
 def text(document: Json) -> str:
-    """Returns the document as it is sent."""
     return json.dumps(document, ensure_ascii=False, allow_nan=False, separators=(",", ":"))
 
 

@@ -330,7 +330,6 @@ _LONGEST_EXAMPLE = 1_200
 
 
 def hits(query: str, most: int) -> list[Hit]:
-    """Returns the best hits, best first."""
     return [_of_code(about) if isinstance(about, str) else _of_entry(about) for about in search(query, most)]
 
 

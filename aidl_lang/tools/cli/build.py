@@ -71,7 +71,6 @@ class BuildResult:
         return exit_code(self.compiled.errors) or (0 if self.compiled.ok else 1)
 
     def motions(self, most: int) -> list[str]:
-        """Returns the remaining motions, one sentence a line."""
         from aidl_lang.geometry.freedom import report
 
         model = self.compiled.model
@@ -261,7 +260,6 @@ def register_watch(parser: argparse.ArgumentParser) -> None:
 
 
 def run_watch(arguments: argparse.Namespace) -> int:
-    """Runs until interrupted."""
     from watchfiles import watch
 
     from aidl_lang.solver.hierarchy import Memory

@@ -110,7 +110,6 @@ def add_look(parser: argparse.ArgumentParser) -> None:
 
 
 def add_outputs(parser: argparse.ArgumentParser, help: str) -> None:
-    """Adds the option for where to write, which may be given several times."""
     parser.add_argument("-o", "--output", action="append", default=[], metavar="OUT", help=help)
 
 
@@ -162,7 +161,6 @@ def add_drawing_options(parser: argparse.ArgumentParser) -> None:
 
 
 def add_provider(parser: argparse.ArgumentParser) -> None:
-    """Adds the options for the language model; see `provider` and `sampling`."""
     group = parser.add_argument_group("the model")
     add = partial(value, group)
     add(

@@ -31,7 +31,6 @@ def around(module: ast.Module, offset: int) -> list[ast.Node]:
 
 
 def scope_at(view: View, offset: int) -> SymbolScope:
-    """Returns the innermost scope around an offset."""
     scopes = view.resolution.scopes
     path = around(view.module, offset)
     return next(scopes[node] for node in reversed(path) if node in scopes and _opens_here(node, offset))
@@ -173,12 +172,10 @@ class EditSite:
 
     @property
     def following(self) -> str:
-        """The text after the word."""
         return self.original.source.text[self.spot.end :]
 
     @cached_property
     def scope(self) -> SymbolScope | None:
-        """The names visible at the place."""
         return None if self.view is None else scope_at(self.view, self.spot.start + 1)
 
     @cached_property

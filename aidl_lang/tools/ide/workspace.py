@@ -117,7 +117,6 @@ def between(source: SourceFile, text: str) -> list[Edit]:
 
 
 def line_start(text: str, offset: int) -> int:
-    """Returns the beginning of the line of an offset."""
     return text.rfind("\n", 0, offset) + 1
 
 
@@ -149,7 +148,6 @@ def format_document(view: View) -> list[Edit]:
 
 
 def format_range(view: View, wanted: Span) -> list[Edit]:
-    """Returns the formatting edits for the lines of a range."""
     text = view.source.text
     start = line_start(text, wanted.start)
     end = text.find("\n", wanted.end)
@@ -232,7 +230,6 @@ class View:
 
     @property
     def knobs(self) -> tuple[Knob, ...]:
-        """The params as the outcome has them."""
         return self.outcome.knobs if self.outcome is not None else ()
 
     @property
@@ -268,7 +265,6 @@ class View:
 
     @cached_property
     def tokens(self) -> Tokens:
-        """All tokens and comments of the text."""
         return tokenize(self.source)
 
     def span(self, start: int, end: int) -> Span:

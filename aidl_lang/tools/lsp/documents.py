@@ -338,7 +338,6 @@ class Publisher:
                 self._tell(uri)
 
     def forget(self, document: Document) -> None:
-        """Removes the diagnostics of a program."""
         self._serials.pop(document, None)
         for uri in self._told.pop(document, {}):
             self._tell(uri)

@@ -165,7 +165,6 @@ class Tidier:
         gc.disable()
 
     def note(self) -> None:
-        """Notes that a piece of work was done."""
         self._left += 1
         if self._planned is not None:
             self._planned.cancel()
@@ -267,7 +266,6 @@ class Runner:
         return await self.solving.put(key, work, first=first)
 
     def forget(self, document: Document) -> None:
-        """Drops the work of a closed document."""
         self.looking.drop(document)
         self.solving.drop(document)
         if self.active is document:

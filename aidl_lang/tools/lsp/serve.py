@@ -212,7 +212,6 @@ _LOST = 1
 
 
 def make(limits: Limits = LIMITS) -> Server:
-    """Returns a server with all requests."""
     server = Server(limits)
     register_lifecycle(server)
     register_navigation(server)

@@ -179,7 +179,6 @@ class Server(LanguageServer):
         self.runner = Runner(self, asyncio.get_running_loop())
 
     def close(self) -> None:
-        """Cancels the work under way."""
         self.runner.close()
         for answers in (self.answers, self.searches, self.sweeps):
             answers.close()

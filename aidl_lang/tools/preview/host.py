@@ -89,7 +89,6 @@ class Page:
             self.tell(TOO_MUCH)
 
     async def next(self) -> str:
-        """Returns the next message for it."""
         while not self._waiting:
             self._news.clear()
             await self._news.wait()
@@ -196,7 +195,6 @@ class Host:
         await self.noticed()
 
     def close(self) -> None:
-        """Cancels the work under way."""
         self._rested()
         self.server.close()
 

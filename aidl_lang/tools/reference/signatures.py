@@ -221,7 +221,6 @@ def relates_boxes(node: ast.ConstraintDefinition, around: _Constraints = ()) -> 
 
 
 def _reads_boxes(name: str) -> bool:
-    """True for the name of functions of boxes."""
     nodes = [signature.node for signature in library.load().callables.get(name, ())]
     return bool(nodes) and all(isinstance(n, ast.FunctionDefinition) and _takes_box(n) for n in nodes)
 

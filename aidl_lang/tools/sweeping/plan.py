@@ -48,7 +48,6 @@ class Span:
 
     @property
     def steps(self) -> int:
-        """Returns how often the step fits."""
         return math.floor((self.high - self.low) / self.step * (1 + 1e-12) + _SLACK) if self.step else 0
 
 
@@ -277,7 +276,6 @@ class Plan:
 
     @property
     def paths(self) -> tuple[str, ...]:
-        """Returns the params that are set."""
         return (*(self.rows.params if self.rows else ()), *(axis.path for axis in self.axes))
 
     @property

@@ -117,7 +117,6 @@ class Context:
         return argument is not None and argument.name is not None
 
     def innermost(self, kind: type[T]) -> T | None:
-        """Returns the innermost node of a kind around the place."""
         return next((node for node in reversed(self.path) if isinstance(node, kind)), None)
 
     @cached_property

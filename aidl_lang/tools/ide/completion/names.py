@@ -225,7 +225,6 @@ def importing(context: Context, files: Files | None) -> Iterator[Draft]:
 
 @lru_cache(maxsize=128)
 def definitions(name: str, text: str) -> tuple[ast.Callable, ...]:
-    """Returns the callable definitions of a file."""
     statements = parse(SourceFile(name, text)).module.statements
     return tuple(s for s in statements if isinstance(s, ast.Callable) and is_definition(s))
 

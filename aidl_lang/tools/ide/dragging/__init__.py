@@ -143,7 +143,6 @@ class _Tries:
         self._places: dict[Values, Mapping[str, Vec]] = {}
 
     def run(self, values: Mapping[str, float]) -> View:
-        """Returns the view with these values, drawn."""
         key = frozenset(values.items())
         if key not in self._shown:
             shown = run(self.view, self.view, params={**(self.view.params or {}), **values}, settings=hasty())
@@ -302,7 +301,6 @@ class _Hold(Solved):
 
     @cached_property
     def editable(self) -> list[Guess]:
-        """The numbers that dragging may write."""
         return [guess for guess in guesses(self.view) if not guess.is_shared]
 
     @cached_property

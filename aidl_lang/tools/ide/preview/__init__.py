@@ -65,7 +65,6 @@ _SLOW = 1e-3
 
 
 def ways(solved: Solved, elements: Elements) -> Iterator[Way]:
-    """Yields the remaining motions of a solved model."""
     motions = solved.model.motions[:MOST]
     if not motions:
         return
@@ -182,7 +181,6 @@ class _Thing:
 
     @property
     def is_turning(self) -> bool:
-        """True if it turns rather than shifts."""
         reach = math.hypot(self.box[2] - self.box[0], self.box[3] - self.box[1]) / 2
         return abs(self.spin) * reach > math.hypot(*self.velocity)
 

@@ -212,7 +212,6 @@ class Ledger:
         return _Restoring(self, prober, source).run({k.item for k in known if k.finding.state in settled})
 
     def inventory(self, source: SourceFile, compiled: Compiled | None) -> Inventory:
-        """Returns the intents of a program."""
         program, found = front(source, self._world, self._settings)
         if compiled is None:
             return inventory(program.resolution, found)
