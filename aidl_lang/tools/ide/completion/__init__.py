@@ -485,7 +485,7 @@ def _value(context: Context) -> Iterator[Draft]:
     if is_demand:
         yield from constraints(context)
     yield from names.values(context)
-    if context.wanted.types != (types.TextType(),):
+    if context.wanted.kinds != (types.TextType(),):
         yield from names.calls(context)
     yield from truths(context.site)
 

@@ -108,7 +108,7 @@ def calls(context: Context) -> Iterator[Draft]:
 
 
 def _takes_things(context: Context) -> bool:
-    kinds = context.wanted.types
+    kinds = context.wanted.kinds
     takes = any(isinstance(kind, GeometryType | StructureType | ListType | AnyType) for kind in kinds)
     return takes and context.use is Use.GEOMETRY if context.call is None else takes or not kinds
 

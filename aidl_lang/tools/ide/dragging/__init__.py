@@ -298,6 +298,7 @@ class _Hold(Solved):
     """What can be taken hold of in a solved view, and the numbers that move it."""
 
     view: View
+    _tried: dict[tuple[Vec, ...], bool] = field(default_factory=dict)
 
     @cached_property
     def editable(self) -> list[Guess]:
@@ -342,10 +343,6 @@ class _Hold(Solved):
         if directions not in self._tried:
             self._tried[directions] = self._can_slide(directions)
         return self._tried[directions]
-
-    @cached_property
-    def _tried(self) -> dict[tuple[Vec, ...], bool]:
-        return {}
 
     def _can_slide(self, directions: tuple[Vec, ...]) -> bool:
         """Tries it with one of the points that move along some directions: all of them move alike."""
