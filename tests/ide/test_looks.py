@@ -41,7 +41,7 @@ def test_whatever_is_picked_is_what_is_drawn(wanted: tuple[int, int, int]) -> No
 
 
 def titles(text: str) -> list[tuple[str, str]]:
-    return [(lens.span.text, lens.title) for lens in lenses(seen(text, solved=True))]
+    return [(span.text, title) for span, title in lenses(seen(text, solved=True))]
 
 
 def test_a_structure_says_what_in_it_can_move() -> None:
@@ -88,6 +88,6 @@ def test_examples(example: View) -> None:
     assert view.outcome is not None
     assert view.outcome.model is not None
     said = lenses(view)
-    assert any(lens.title.startswith("solved") for lens in said)
-    names = {lens.span.text for lens in said}
+    assert any(title.startswith("solved") for _, title in said)
+    names = {span.text for span, _ in said}
     assert names <= {s.name.partition("[")[0] for s in view.outcome.model.root.walk()}

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import asyncio
 import gc
-import threading
 import time
 from collections.abc import Callable, Hashable
 from concurrent.futures import Future, ThreadPoolExecutor
@@ -35,6 +34,10 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 
 
+FAILED = -32803
+"""The protocol's code for a request that was understood and cannot be done."""
+
+
 class Dropped(Cancelled):
     """Raised in place of a result where newer work of the same key came before this had begun."""
 
@@ -42,11 +45,11 @@ class Dropped(Cancelled):
 class Lane:
     """Does one piece of work at a time, of those under one key the newest; for use in the loop's thread."""
 
-    def __init__(self, name: str, loop: asyncio.AbstractEventLoop, finished: Callable[[], None]) -> None:
+    def __init__(self, name: str, finished: Callable[[], None] = lambda: None) -> None:
         self._executor = ThreadPoolExecutor(max_workers=1, thread_name_prefix=name)
-        self._loop, self._finished = loop, finished
+        self._finished = finished
         self._waiting: dict[Hashable, tuple[Callable[[], Any], asyncio.Future[Any]]] = {}
-        self.is_running = False
+        self.running: asyncio.Future[Any] | None = None
         self._is_closed = False
 
     def waits(self, key: Hashable) -> bool:
@@ -55,7 +58,7 @@ class Lane:
     def put(self, key: Hashable, work: Callable[[], T], first: bool = False) -> asyncio.Future[T]:
         """Queues work, last or as the next. Returns what will have its result."""
         self.drop(key)
-        result: asyncio.Future[T] = self._loop.create_future()
+        result: asyncio.Future[T] = asyncio.get_running_loop().create_future()
         result.add_done_callback(lambda done: done.cancelled() or done.exception())  # which is then no news
         if self._is_closed:
             result.set_exception(Dropped())
@@ -65,6 +68,25 @@ class Lane:
             self._start()
         return result
 
+    async def ask(self, answer: Callable[[], T]) -> T:
+        """Returns an answer, found in its turn and no longer than somebody waits for it; for a CannotError
+        raises an error of the protocol.
+        """
+
+        def is_unwanted() -> bool:
+            return self._is_closed or (self.running is not None and self.running.cancelled())
+
+        def work() -> T:
+            with cancelled_when(is_unwanted):
+                return answer()
+
+        try:
+            return await self.put(object(), work)
+        except CannotError as reason:
+            raise JsonRpcException(str(reason), FAILED) from None
+        except Dropped:
+            raise asyncio.CancelledError from None
+
     def drop(self, key: Hashable) -> None:
         """Drops the work waiting under a key; running work goes on."""
         _, result = self._waiting.pop(key, (None, None))
@@ -72,67 +94,33 @@ class Lane:
             result.set_exception(Dropped())
 
     def close(self) -> None:
-        """Drops waiting work and begins nothing more."""
+        """Drops waiting work, cancels the present answer, and begins nothing more."""
         self._is_closed = True
         for key in list(self._waiting):
             self.drop(key)
         self._executor.shutdown(wait=False, cancel_futures=True)
 
     def _start(self) -> None:
-        if not self.is_running and self._waiting:
+        while self.running is None and self._waiting:
             work, result = self._waiting.pop(next(iter(self._waiting)))
-            self.is_running = True
-            self._executor.submit(work).add_done_callback(partial(self._hand_over, result))
+            if not result.cancelled():
+                self.running = result
+                self._executor.submit(work).add_done_callback(partial(self._hand_over, result))
 
     def _hand_over(self, result: asyncio.Future[Any], future: Future[Any]) -> None:
         """Passes a result to the loop, from the lane's thread or whichever cancels."""
         with suppress(RuntimeError):  # the loop has ended: nobody waits for this any more
-            self._loop.call_soon_threadsafe(self._finish, result, future)
+            result.get_loop().call_soon_threadsafe(self._finish, result, future)
 
     def _finish(self, result: asyncio.Future[Any], future: Future[Any]) -> None:
-        self.is_running = False
+        self.running = None
         if not (future.cancelled() or result.done()):
             if (error := future.exception()) is not None:
                 result.set_exception(error)
             else:
                 result.set_result(future.result())
-        self._loop.call_soon(self._start)  # once the result was taken note of
+        result.get_loop().call_soon(self._start)  # once the result was taken note of
         self._finished()
-
-
-FAILED = -32803
-"""The protocol's code for a request that was understood and cannot be done."""
-
-
-class Answers:
-    """Answers questions one after the other, off the loop. Work on a cancelled question stops."""
-
-    def __init__(self, name: str) -> None:
-        self._executor = ThreadPoolExecutor(max_workers=1, thread_name_prefix=name)
-        self._is_closing = False
-
-    async def ask(self, answer: Callable[[], T]) -> T:
-        """Returns the answer. Raises what `answer` raises; for a CannotError an error of the protocol."""
-        unwanted = threading.Event()
-
-        def work() -> T:
-            with cancelled_when(lambda: unwanted.is_set() or self._is_closing):
-                return answer()
-
-        if self._is_closing:
-            raise asyncio.CancelledError
-        try:
-            return await asyncio.wrap_future(self._executor.submit(work))
-        except asyncio.CancelledError:
-            unwanted.set()
-            raise
-        except CannotError as reason:
-            raise JsonRpcException(str(reason), FAILED) from None
-
-    def close(self) -> None:
-        """Cancels the present answer, and begins nothing more."""
-        self._is_closing = True
-        self._executor.shutdown(wait=False, cancel_futures=True)
 
 
 # A run leaves tens of thousands of objects that hold each other. Python's collector would look for them in
@@ -225,9 +213,9 @@ class Runner:
         self.limits, self.delay = server.limits, 0.0
         self.active: Document | None = None
         """What the user is at: it goes first."""
-        self._tidier = Tidier(loop, lambda: self.looking.is_running or self.solving.is_running)
-        self.looking = Lane("looking", loop, self._tidier.note)
-        self.solving = Lane("solving", loop, self._tidier.note)
+        self._tidier = Tidier(loop, lambda: any((self.looking.running, self.solving.running)))
+        self.looking = Lane("looking", self._tidier.note)
+        self.solving = Lane("solving", self._tidier.note)
         self._loop, self._is_closing = loop, False
 
     def warm_up(self) -> None:

@@ -30,7 +30,7 @@ from aidl_lang.common.records import record
 from aidl_lang.pipeline import Settings as Limits
 from aidl_lang.tools.ide.workspace import Project, Unit, View, Workspace
 from aidl_lang.tools.lsp import documents
-from aidl_lang.tools.lsp.running import LIMITS, Answers, Runner
+from aidl_lang.tools.lsp.running import LIMITS, Lane, Runner
 from aidl_lang.version import __version__
 
 # --- The protocol's own part: pygls, made robust against hostile or hasty clients.
@@ -166,9 +166,9 @@ class Server(LanguageServer):
         self.project = Project(self.open_files)
         self.settings = documents.Settings()
         self.publisher = documents.Publisher(self.text_document_publish_diagnostics)
-        self.answers = Answers("answering")
-        self.searches = Answers("searching")
-        self.sweeps = Answers("sweeping")
+        self.answers = Lane("answering")
+        self.searches = Lane("searching")
+        self.sweeps = Lane("sweeping")
         self.on_solved: list[Callable[[documents.Document], None]] = []
         self.on_closed: list[Callable[[documents.Document], object]] = []
         self.runner: Runner

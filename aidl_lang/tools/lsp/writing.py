@@ -145,21 +145,20 @@ def register_hints(server: Server) -> None:
         answered.note(asked)
         if not asked.settings.lenses:
             return []
-        made = []
-        for each in lenses.lenses(asked.view):
-            command = types.Command(each.title, _OPEN_PREVIEW, arguments=[asked.uri])
-            made.append(types.CodeLens(asked.convert.range(each.span), command))
-        for each in lenses.end_lenses(asked.view, ends.of(asked.uri, asked.known)):
-            command = types.Command(each.title, CHECK_ENDS, arguments=[asked.uri])
-            made.append(types.CodeLens(asked.convert.range(each.span), command))
-        return made
+        found = [(_OPEN_PREVIEW, each) for each in lenses.lenses(asked.view)]
+        at_ends = lenses.end_lenses(asked.view, ends.of(asked.uri, asked.known))
+        found += [(CHECK_ENDS, each) for each in at_ends]
+        return [
+            types.CodeLens(asked.convert.range(span), types.Command(title, command, arguments=[asked.uri]))
+            for command, (span, title) in found
+        ]
 
     @server.answers_to(types.TEXT_DOCUMENT_INLAY_HINT, types.InlayHintOptions(), patience=_PATIENCE)
     def inlay(asked: Asked, params: types.InlayHintParams) -> list[types.InlayHint]:
         answered.note(asked)
-        others, shown = asked.settings.solved_values, {lenses.InlayKind.READING: asked.settings.readings}
+        shows = {True: asked.settings.readings, False: asked.settings.solved_values}
         found = lenses.inlays(asked.view, asked.convert.span(params.range))
-        return [_hint(each, asked) for each in found if shown.get(each.kind, others)]
+        return [_hint(each, asked) for each in found if shows[each.is_reading]]
 
 
 class _Answered:
