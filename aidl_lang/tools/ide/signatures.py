@@ -15,7 +15,7 @@ from aidl_lang.common.records import record
 from aidl_lang.parser import standing_before
 from aidl_lang.syntax import ast
 from aidl_lang.syntax.tables import Token
-from aidl_lang.tools.ide.site import Where, around, innermost_brackets, scope_at, site_at, spot_at
+from aidl_lang.tools.ide.site import around, innermost_brackets, scope_at, site_at, spot_at
 from aidl_lang.tools.ide.workspace import View
 from aidl_lang.tools.reference import facts, forms
 from aidl_lang.tools.reference.collect import Doc, Entry, doc, reference
@@ -302,7 +302,7 @@ class SignatureHelp:
 def signature_help(view: View, offset: int) -> SignatureHelp | None:
     """Returns help for the innermost call whose parentheses, closed or not, contain an offset."""
     spot = spot_at(view, offset)
-    if spot.where is Where.COMMENT:
+    if spot.where == "comment":
         return None
     offset = spot.offset  # within the text
     brackets = innermost_brackets(standing_before(view.source, offset))
@@ -310,7 +310,7 @@ def signature_help(view: View, offset: int) -> SignatureHelp | None:
     if opening is None:
         return None
     found = _argument_at(view, opening, offset)
-    if found is None and spot.where is Where.CODE:
+    if found is None and spot.where == "code":
         site = site_at(view, spot)
         view = site.view or view
         found = _argument_at(view, opening, spot.start + 1)

@@ -22,7 +22,7 @@ from aidl_lang.tools.ide.completion.drafts import MOST, Completion, Draft, Files
 from aidl_lang.tools.ide.completion.names import constraints, forms, importing, thing_kind
 from aidl_lang.tools.ide.references import parameter_node
 from aidl_lang.tools.ide.signatures import Reading, fenced, is_public, of_parameter, of_public
-from aidl_lang.tools.ide.site import EditSite, Spot, Where, around, site_at, spot_at
+from aidl_lang.tools.ide.site import EditSite, Spot, around, site_at, spot_at
 from aidl_lang.tools.ide.workspace import View, look
 from aidl_lang.tools.reference.collect import reference
 from aidl_lang.tools.reference.signatures import parts, things
@@ -368,11 +368,11 @@ def complete(view: View, offset: int, files: Files | None = None) -> list[Comple
     """Returns the likeliest `MOST` completions at an offset. `files` lists what may be imported."""
     spot = spot_at(view, offset)
     match spot.where:
-        case Where.COMMENT:
+        case "comment":
             return []
-        case Where.STRING:
+        case "string":
             found = _in_string(view, spot, files)
-        case Where.NUMBER:
+        case "number":
             is_behind = spot.offset >= spot.start and (spot.before is None or spot.before.kind != ".")
             found = drafts.units(_of_literal(view, spot)) if is_behind else iter(())
         case _:
@@ -397,7 +397,7 @@ def _of_literal(view: View, spot: Spot) -> Context | None:
     """Returns the context around a string, closed if it is not, or around a number without its unit."""
     assert spot.token is not None
     start, text = spot.token.start, view.source.text
-    if spot.where is Where.STRING:
+    if spot.where == "string":
         quote = text[start]
         shown = view if spot.token.kind == "STRING" else None
         filled = text[:start] + quote * 2 + text[spot.token.end :]
@@ -408,7 +408,7 @@ def _of_literal(view: View, spot: Spot) -> Context | None:
     path = tuple(around(shown.module, start))
     if not isinstance(path[-1], ast.Number | ast.String):
         return None
-    here = Spot(Where.CODE, start, start, start, spot.before)
+    here = Spot("code", start, start, start, spot.before)
     return context_of(EditSite(view, here, standing_before(view.source, start), shown, path))
 
 

@@ -27,7 +27,7 @@ from aidl_lang.tools.ide.signatures import (
     of_public,
     type_of,
 )
-from aidl_lang.tools.ide.site import Where, around, spot_at, token_at
+from aidl_lang.tools.ide.site import around, spot_at, token_at
 from aidl_lang.tools.ide.workspace import Solved, View
 from aidl_lang.tools.reference.collect import Entry, reference
 from aidl_lang.tools.vocabulary import vocabulary
@@ -157,7 +157,7 @@ _VALUES = frozenset(SymbolKind) - {
 
 
 def hover(view: View, offset: int) -> Hover | None:
-    if spot_at(view, offset).where in (Where.COMMENT, Where.STRING):
+    if spot_at(view, offset).where in ("comment", "string"):
         return None
     token = token_at(view, offset)
     if token is not None and token.kind == "NUMBER":
