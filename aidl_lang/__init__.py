@@ -330,7 +330,7 @@ def sweep(
         outputs=[str(name) for name in names],
         table=table,
         drawn=None if random is None else (random, seed),
-        engine=(on, jobs),
+        on=(on, jobs),
         cache=str(cache or ""),
         resumes=resume,
         stops_on_error=stop_on_error,

@@ -54,7 +54,6 @@ class Reader:
 
     @staticmethod
     def of(source: SourceFile) -> Reader:
-        """Returns the author of one file."""
         return Reader({source.name: source.text})
 
     @cached_property

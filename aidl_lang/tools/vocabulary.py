@@ -17,8 +17,7 @@ from aidl_lang.tools.reference.collect import reference
 # --- All the words of the language by class, for colouring and completion.
 #
 # Each list comes from where its words are defined: the grammar, the kinds, the units, what is built in and
-# the library. What is said here is only to which class a word of the grammar belongs; `unclaimed` names the
-# words that no class has.
+# the library. What is said here is only to which class a word of the grammar belongs.
 
 _KEYWORDS: Mapping[str, str] = {
     "declarations": "param var let fn shape constraint alias",
@@ -155,14 +154,6 @@ def vocabulary() -> Vocabulary:
         synonyms=tuple(sorted(synonyms.items())),
         helpers=tuple(sorted({word for word in defined if word not in known and word not in synonyms})),
     )
-
-
-def unclaimed() -> frozenset[str]:
-    """Returns words and signs of the grammar without a class: empty unless the grammar is being changed."""
-    claimed = {
-        word for classes in (_KEYWORDS, _SIGNS) for listed in classes.values() for word in listed.split()
-    }
-    return frozenset(load_tables().types) - claimed
 
 
 def _present(listed: str, words: Iterable[str]) -> tuple[str, ...]:

@@ -100,7 +100,7 @@ def recorded(place: Path) -> list[tuple[SourceFile, str]]:
         job, language = conversation.job, VARIANTS[conversation.job.variant]
         if isinstance(language, Aidl):
             for number, reply in enumerate(conversation.replies, 1):
-                program = find_program(reply.text, language.fences, language.reads).program
+                program, _ = find_program(reply.text, language.fences, language.reads)
                 if program is not None:
                     found.append((SourceFile(f"{job.key}, reply {number}", program), job.prompt))
     if not found:

@@ -24,7 +24,7 @@ solid plate {
 
 
 def titles(view: View, found: Found | None = None) -> list[tuple[str, str]]:
-    return [(lens.span.text.split()[1], lens.title) for lens in end_lenses(view, found)]
+    return [(span.text.split()[1], title) for span, title in end_lenses(view, found)]
 
 
 def swept(view: View) -> Found:

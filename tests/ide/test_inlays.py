@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from aidl_lang.tools.ide.lenses import InlayKind, inlays
+from aidl_lang.tools.ide.lenses import inlays
 from aidl_lang.tools.ide.workspace import applied, look, run
 from tests.ide.conftest import opened, seen
 
@@ -37,7 +37,7 @@ def test_the_edit_writes_the_value() -> None:
 def test_a_kept_size_that_changed_says_so_in_words() -> None:
     view = seen("drawing d { c = circle(center: (1, 2), radius: 3)\n constrain c.radius == 4 }", solved=True)
     (hint,) = inlays(view)
-    assert (hint.text, hint.kind) == ("→ 4 mm", InlayKind.SOLVED)
+    assert (hint.text, hint.is_reading) == ("→ 4 mm", False)
     assert "a size that had to change, written as 3 and solved to 4" in hint.tooltip
 
 
@@ -49,7 +49,7 @@ def test_the_reading_of_an_ambiguous_call_is_told() -> None:
     view = seen(text, solved=True)
     assert view.outcome is not None
     assert view.outcome.model is not None
-    told = [i for i in inlays(view) if i.kind is InlayKind.READING]
+    told = [i for i in inlays(view) if i.is_reading]
     assert [i.text for i in told] == [r.text for r in view.outcome.model.readings]
     assert told
     assert all(text[: i.offset].endswith("tangent(a, b)") for i in told)

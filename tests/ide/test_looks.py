@@ -22,7 +22,7 @@ COLORED = """\
 
 
 def test_colours_are_read_as_they_are_drawn() -> None:
-    found = [(c.span.text, c.rgb) for c in colors(seen(COLORED))]
+    found = [(span.text, rgb) for span, rgb in colors(seen(COLORED))]
     assert found == [
         ('"crimson"', (220, 20, 60)),
         ("navy", (0, 0, 128)),
@@ -34,14 +34,14 @@ def test_colours_are_read_as_they_are_drawn() -> None:
 @pytest.mark.parametrize("wanted", [(1, 2, 3), (255, 0, 0), (0, 0, 0)])
 def test_whatever_is_picked_is_what_is_drawn(wanted: tuple[int, int, int]) -> None:
     view = seen(COLORED)
-    for number, color in enumerate(colors(view)):
-        for spelling in spellings(view, color.span, wanted):
-            text = applied(view.source.text, [Edit(color.span, spelling)])
-            assert colors(seen(text))[number].rgb == wanted
+    for number, (span, _) in enumerate(colors(view)):
+        for spelling in spellings(view, span, wanted):
+            text = applied(view.source.text, [Edit(span, spelling)])
+            assert colors(seen(text))[number][1] == wanted
 
 
 def titles(text: str) -> list[tuple[str, str]]:
-    return [(lens.span.text, lens.title) for lens in lenses(seen(text, solved=True))]
+    return [(span.text, title) for span, title in lenses(seen(text, solved=True))]
 
 
 def test_a_structure_says_what_in_it_can_move() -> None:
@@ -88,6 +88,6 @@ def test_examples(example: View) -> None:
     assert view.outcome is not None
     assert view.outcome.model is not None
     said = lenses(view)
-    assert any(lens.title.startswith("solved") for lens in said)
-    names = {lens.span.text for lens in said}
+    assert any(title.startswith("solved") for _, title in said)
+    names = {span.text for span, _ in said}
     assert names <= {s.name.partition("[")[0] for s in view.outcome.model.root.walk()}

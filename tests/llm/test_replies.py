@@ -11,7 +11,7 @@ PROGRAM = "solid plate { outline = rectangle(width: 60, height: 40) }\n"
 
 
 def found(reply: str) -> str | None:
-    return find_program(reply, ("aidl",), Aidl().reads).program
+    return find_program(reply, ("aidl",), Aidl().reads)[0]
 
 
 @pytest.mark.parametrize(

@@ -8,6 +8,7 @@ import io
 import os
 import re
 import zipfile
+from dataclasses import replace
 from pathlib import Path
 from threading import Event
 from typing import Any
@@ -17,7 +18,6 @@ import ezdxf.bbox
 import pytest
 
 from aidl_lang.common.diagnostics import Edit
-from aidl_lang.common.resources import resource
 from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.common.world import Reads
 from aidl_lang.export import FORMATS, OFFERED
@@ -54,30 +54,29 @@ def test_what_was_changed_meanwhile_is_not_overwritten(file: Path) -> None:
     assert file.read_text("utf-8") == "// new\n" + TEXT
 
 
-@pytest.mark.parametrize("uri", [resource("stdlib").as_uri() + "/shapes.aidl", "file:///etc/passwd"])
-def test_nothing_but_the_program_is_edited(file: Path, uri: str) -> None:
+@pytest.mark.parametrize("is_library", [True, False])
+def test_nothing_but_the_program_is_edited(file: Path, is_library: bool) -> None:
     def refuse(path: Path, data: bytes) -> None:
         raise AssertionError(path)
 
-    place = {"line": 0, "character": 0}
-    edits = [{"range": {"start": place, "end": place}, "newText": "x"}]
-
-    async def edited() -> Any:
+    async def edited() -> list[str]:
         host = Host(file, refuse)
         await host.start()
         document = host.server.documents.get(host.uri)
         assert document is not None
         await document.until_solved(document.serial, 60)
-        texts = [{"textDocument": {"uri": uri, "version": None}, "edits": edits}]
-        stale = [{"textDocument": {"uri": host.uri, "version": 7}, "edits": edits}]
-        made = [await host._edited({"edit": {"documentChanges": changes}}) for changes in (texts, stale)]
+        known = document.ran
+        assert known is not None
+        library = known.view.program.library.sources[0]
+        foreign = library if is_library else SourceFile("/etc/passwd", "")
+        asked = host.server.asked_now(document, known), foreign
+        stale = host.server.asked_now(document, replace(known, version=7)), known.view.source
+        tried = ((each, [Edit(Span(source, 0, 0), "x")]) for each, source in (asked, stale))
+        made = [await host._apply(each, edits, "Change") for each, edits in tried]
         host.close()
         return made
 
-    assert asyncio.run(edited()) == [
-        {"applied": False, "failureReason": "this cannot be changed from here"},
-        {"applied": False, "failureReason": "the text has changed meanwhile"},
-    ]
+    assert asyncio.run(edited()) == ["this cannot be changed from here", "the text has changed meanwhile"]
 
 
 def test_a_file_that_cannot_be_written_says_so(file: Path) -> None:

@@ -124,8 +124,8 @@ def test_what_slides_along_a_slope_has_an_arrow_along_it() -> None:
         """
     ).values()
     (arrow,) = way.arrows
-    assert arrow.start == pytest.approx((30, 40))
-    assert (arrow.end[1] - 40) / (arrow.end[0] - 30) == pytest.approx(4 / 3)
+    assert arrow["from"] == pytest.approx((30, 40))
+    assert (arrow["to"][1] - 40) / (arrow["to"][0] - 30) == pytest.approx(4 / 3)
 
 
 def test_a_point_moves_from_where_it_is() -> None:
@@ -134,8 +134,8 @@ def test_a_point_moves_from_where_it_is() -> None:
     ).values()
     (arrow,) = way.arrows
     assert way.words == "slide along a curve that begins along y at its end"
-    assert arrow.start == pytest.approx((40, 5))
-    assert arrow.end[0] == pytest.approx(40, abs=1e-3)
+    assert arrow["from"] == pytest.approx((40, 5))
+    assert arrow["to"][0] == pytest.approx(40, abs=1e-3)
 
 
 SEVERAL = """
@@ -168,7 +168,7 @@ def test_the_examples_have_arrows_in_finite_places() -> None:
         assert preview(view).motions == ()
         assert len(made.motions) == len(view.outcome.model.motions)
         for way in made.motions:
-            numbers = [n for a in way.arrows for n in (*a.start, *a.end)]
+            numbers = [n for a in way.arrows for n in (*a["from"], *a["to"])]
             numbers += [n for t in way.turns for n in (*t.center, t.radius, t.start, t.sweep)]
             assert all(map(math.isfinite, numbers))
             assert way.arrows or way.turns

@@ -12,7 +12,7 @@ from aidl_lang.common.source import SourceFile
 from aidl_lang.common.world import DiskWorld
 from aidl_lang.tools.sweeping.outputs import outputs
 from aidl_lang.tools.sweeping.plan import axis, planned, read_table
-from aidl_lang.tools.sweeping.session import Job, Session, opened, reproducing
+from aidl_lang.tools.sweeping.session import Job, Sweep, opened, reproducing
 from aidl_lang.tools.sweeping.working import Making
 
 T = TypeVar("T")
@@ -89,8 +89,8 @@ def sweep(
     engine: Here | None = None,
     text: str = PLATE,
     **more: object,
-) -> Session:
+) -> Sweep:
     """Runs a sweep in a folder to its end."""
-    session = Session(asked(folder, values, names, text, **more), engine or Here())
+    session = Sweep(asked(folder, values, names, text, **more), lambda: engine or Here())
     list(session)
     return session

@@ -16,7 +16,7 @@ import pytest
 
 from aidl_lang.common.diagnostics import AidlError
 from aidl_lang.tools.cli import main
-from aidl_lang.tools.sweeping.session import Session
+from aidl_lang.tools.sweeping.session import Sweep
 from tests.sweep.here import PLATE, Here, asked, sweep
 
 
@@ -86,8 +86,8 @@ def test_a_sweep_that_is_broken_off_goes_on(tmp_path: Path) -> None:
     values = ["width=40,80,120", "style=*"]
     sweep(whole, values, names)
 
-    stopped = Session(asked(tmp_path, values, names), Here())
-    assert len(list(islice(stopped, 4))) == 4
+    with Sweep(asked(tmp_path, values, names), Here) as stopped:
+        assert len(list(islice(stopped, 4))) == 4
     assert not (tmp_path / "table.csv").exists()
     assert (tmp_path / "table.csv.sweep").is_dir()
     engine = Here()
@@ -101,7 +101,8 @@ def test_a_sweep_that_is_broken_off_goes_on(tmp_path: Path) -> None:
 
 
 def test_without_resume_it_begins_anew(tmp_path: Path) -> None:
-    next(iter(Session(asked(tmp_path, names=["table.csv"]), Here())))
+    with Sweep(asked(tmp_path, names=["table.csv"]), Here) as stopped:
+        next(iter(stopped))
     engine = Here()
     assert sweep(tmp_path, names=["table.csv"], engine=engine).kept == 0
     assert engine.calls == 4

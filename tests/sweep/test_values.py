@@ -145,11 +145,10 @@ def test_a_table_has_params_and_other_columns(tmp_path: Path, knobs: tuple[Knob,
     text = '\ufeffOrder no.,Name,width,hollow\r\n17,"two\r\nlines",6cm,TRUE\r\n\r\n18," x ",,0\r\n'
     rows = read_table(table(tmp_path, text), knobs, Reads())
     assert (rows.params, rows.labels) == (("name", "width", "hollow"), ("Order no.",))
-    assert rows.values == (
-        {"name": "two\r\nlines", "width": "6cm", "hollow": True},
-        {"name": " x ", "hollow": False},
+    assert rows.rows == (
+        ({"name": "two\r\nlines", "width": "6cm", "hollow": True}, {"Order no.": "17"}),
+        ({"name": " x ", "hollow": False}, {"Order no.": "18"}),
     )
-    assert rows.labelled == ({"Order no.": "17"}, {"Order no.": "18"})
 
 
 @pytest.mark.parametrize(

@@ -11,7 +11,7 @@ import asyncio
 import dataclasses
 import inspect
 import json
-import math
+import sys
 from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property
 from types import NoneType, UnionType
@@ -19,7 +19,7 @@ from typing import Annotated, Any, Literal, Union, get_args, get_origin, get_typ
 
 from aidl_lang.common.diagnostics import AidlError, Diagnostic
 from aidl_lang.common.names import nearest
-from aidl_lang.common.prose import did_you_mean
+from aidl_lang.common.prose import did_you_mean, shortened
 from aidl_lang.common.records import record
 from aidl_lang.common.render import compact
 from aidl_lang.tools.agents.results import Result, data, findings, shown_fields
@@ -57,10 +57,6 @@ class Tool:
     @property
     def name(self) -> str:
         return self.function.__name__
-
-    @property
-    def title(self) -> str:
-        return self.name.replace("_", " ").capitalize()
 
     @property
     def description(self) -> str:
@@ -121,7 +117,7 @@ def for_mcp() -> list[Json]:
     return [
         {
             "name": tool.name,
-            "title": tool.title,
+            "title": tool.name.replace("_", " ").capitalize(),
             "description": tool.description,
             "inputSchema": tool.arguments(),
             "outputSchema": tool.result,
@@ -226,6 +222,7 @@ def _is_union(kind: Any) -> bool:
 _SHOWN = 60
 """Most characters of a value that a message quotes."""
 _PAIR = {"name", "value"}
+_LARGEST = sys.float_info.max
 
 
 @record()
@@ -271,8 +268,8 @@ def _bound(tool: Tool, arguments: Mapping[str, object]) -> dict[str, object]:
         try:
             taken[name] = _converted(value, known[name].kind)
         except _MisfitError as misfit:
-            wanted, shown = misfit.args[0], json.dumps(misfit.args[1])
-            shown = shown if len(shown) <= _SHOWN else shown[: _SHOWN - 1] + "…"
+            wanted, value = misfit.args
+            shown = shortened(json.dumps(value), _SHOWN)
             message = f"`{name}` of `{tool.name}` takes {wanted}, not `{shown}`"
             raise refusal("E0944", message, known[name].description) from None
     return taken
@@ -326,18 +323,11 @@ def _primitive(value: object, kind: Any) -> object:
         if not isinstance(value, bool):
             raise _MisfitError("true or false", value)
         return value
-    if isinstance(value, bool) or not isinstance(value, int | float) or not _is_finite(value):
+    if isinstance(value, bool) or not isinstance(value, int | float) or not abs(value) <= _LARGEST:
         raise _MisfitError("a number", value)
     if kind is int and value != int(value):
         raise _MisfitError("a whole number", value)
     return int(value) if kind is int else float(value)
-
-
-def _is_finite(value: float) -> bool:
-    try:
-        return math.isfinite(value)
-    except OverflowError:  # a whole number of hundreds of digits
-        return False
 
 
 def _text(value: object) -> str:

@@ -19,21 +19,7 @@ from aidl_lang.explaining import failures
 from aidl_lang.geometry.boolean import Contact
 from aidl_lang.geometry.survey import Part, some_of
 from aidl_lang.pipeline import Compiled, Settings
-from aidl_lang.tools.agents.results import (
-    Body,
-    Conflict,
-    Drawn,
-    Export,
-    Given,
-    Knob,
-    Party,
-    Replacement,
-    Status,
-    findings,
-    joined,
-    place,
-    repair,
-)
+from aidl_lang.tools.agents import results
 from aidl_lang.tools.agents.workspace import Limits, refusal
 from aidl_lang.tools.discretion import Reader
 
@@ -99,7 +85,6 @@ def shortened(document: Json, most: int) -> tuple[Json, str | None]:
 
 
 def text(document: Json) -> str:
-    """Returns the document as it is sent."""
     return json.dumps(document, ensure_ascii=False, allow_nan=False, separators=(",", ":"))
 
 
@@ -167,23 +152,27 @@ class Remedies:
         self.source, self.world, self.params, self.settings = source, world, params, settings
         self.tried = 0
 
-    def conflict(self, found: failures.Conflict) -> Conflict:
+    def conflict(self, found: failures.Conflict) -> results.Conflict:
         parties, givens = list(map(self._party, found.parties)), list(map(self._given, found.givens))
-        return Conflict(found.headline, found.is_minimal, parties, givens)
+        return results.Conflict(found.headline, found.is_minimal, parties, givens)
 
-    def _given(self, given: failures.ExactNumber) -> Given:
-        return Given(
-            given.name, place(given.span), given.would_fit, repair(given.fix), self._solves(given.fix)
+    def _given(self, given: failures.ExactNumber) -> results.Given:
+        return results.Given(
+            given.name,
+            results.place(given.span),
+            given.would_fit,
+            results.repair(given.fix),
+            self._solves(given.fix),
         )
 
-    def _party(self, party: failures.Party) -> Party:
-        return Party(
+    def _party(self, party: failures.Party) -> results.Party:
+        return results.Party(
             party.text,
             party.path,
-            place(party.span),
+            results.place(party.span),
             party.off if math.isfinite(party.off) else None,
             party.would_fit,
-            repair(party.fix) if party.fix else None,
+            results.repair(party.fix) if party.fix else None,
             self._solves(party.fix) if party.fix else None,
         )
 
@@ -199,13 +188,13 @@ class Remedies:
         return pipeline.compile(changed, self.world, self.params, self.settings).status == "solved"
 
 
-def in_lines(conflict: Conflict) -> str:
+def in_lines(conflict: results.Conflict) -> str:
     lead = "without any one of these the others hold" if conflict.is_minimal else "these do not hold"
     told = [line for p in conflict.parties for line in _told(p)]
     return "\n".join([f"{conflict.headline}; {lead}:", *told, *map(_exact, conflict.givens)])
 
 
-def _told(party: Party) -> Iterator[str]:
+def _told(party: results.Party) -> Iterator[str]:
     off = f"off by {short(party.off)}" if party.off else ""
     words = "; ".join(filter(None, (party.would_fit, off)))
     yield f"- line {party.place.line}, in {party.held_by}: {party.constraint}{f' ({words})' if words else ''}"
@@ -214,12 +203,12 @@ def _told(party: Party) -> Iterator[str]:
         yield f"    {party.remedy.title}: {edits}{_OUTCOMES[party.solves]}"
 
 
-def _exact(given: Given) -> str:
+def _exact(given: results.Given) -> str:
     name = f" `{given.name}`" if given.name else ""
     return f"- line {given.place.line}: exact{name}; {given.would_fit}{_OUTCOMES[given.solves]}"
 
 
-def _edit(edit: Replacement) -> str:
+def _edit(edit: results.Replacement) -> str:
     where = f"line {edit.place.line}, column {edit.place.column}"
     return f"{where}: `{edit.old}` becomes `{edit.new}`" if edit.old else f"{where}: insert `{edit.new}`"
 
@@ -238,7 +227,7 @@ def drawn(
     limits: Limits,
     *,
     dimensioned: bool,
-) -> Drawn:
+) -> results.Drawn:
     """Returns a program's result in some formats, for its reader. Raises RefusalError: an unknown `path`."""
     from aidl_lang.export.json import to_dict
 
@@ -260,12 +249,12 @@ def drawn(
     }
     left = [said for what, count in counts.items() if (said := left_out(what, count - MOST_LISTED))]
     diagnostics = [*compiled.diagnostics, *reader.diagnostics(making.notes)]
-    return Drawn(
+    return results.Drawn(
         compiled.ok,
         status(compiled),
-        findings(diagnostics),
+        results.findings(diagnostics),
         [
-            Knob(k.path, k.value, k.low, k.high, list(k.choices), k.step, k.unit, k.doc)
+            results.Knob(k.path, k.value, k.low, k.high, list(k.choices), k.step, k.unit, k.doc)
             for k in compiled.knobs[:MOST_LISTED]
         ],
         compiled.model.degrees if compiled.model else None,
@@ -277,7 +266,7 @@ def drawn(
         exports,
         left,
         pictures=() if png is None else (png,),
-        text=joined(
+        text=results.joined(
             [
                 _headline(compiled, png is not None),
                 compact(diagnostics),
@@ -301,7 +290,7 @@ class _Making:
         self.notes: list[Diagnostic] = []
         self.room = limits.text
 
-    def export(self, name: str) -> Export | None:
+    def export(self, name: str) -> results.Export | None:
         """Returns a file of a program that is right."""
         content = self.made(name) if self.compiled.ok else None
         if content is None:
@@ -315,7 +304,7 @@ class _Making:
             )
             return None
         self.room -= len(text)
-        return Export(name, "text" if is_text else "base64", text)
+        return results.Export(name, "text" if is_text else "base64", text)
 
     def made(self, name: str) -> bytes | None:
         """Returns a file, of a program that did not solve with its last state; None if it cannot be made."""
@@ -331,8 +320,8 @@ class _Making:
         return made.data
 
 
-def status(compiled: Compiled) -> Status:
-    return cast(Status, compiled.status)
+def status(compiled: Compiled) -> results.Status:
+    return cast(results.Status, compiled.status)
 
 
 def _headline(compiled: Compiled, has_picture: bool) -> str:
@@ -362,14 +351,16 @@ def motions(compiled: Compiled) -> list[str]:
     return [] if compiled.model is None else report(compiled.model, MOST_LISTED)
 
 
-def _bodies(compiled: Compiled) -> list[Body]:
+def _bodies(compiled: Compiled) -> list[results.Body]:
     drawing = compiled.drawing
     if drawing is None:
         return []
-    return [Body(b.path, *b.box, area=drawing.measures[b.path].area) for b in drawing.bodies[:MOST_LISTED]]
+    return [
+        results.Body(b.path, *b.box, area=drawing.measures[b.path].area) for b in drawing.bodies[:MOST_LISTED]
+    ]
 
 
-def _body(body: Body) -> str:
+def _body(body: results.Body) -> str:
     width, height = short(body.right - body.left), short(body.top - body.bottom)
     at = f"({short(body.left)}, {short(body.bottom)}) to ({short(body.right)}, {short(body.top)})"
     return f"{body.path}: {width} × {height} mm, {at}, area {short(body.area)} mm²"
@@ -384,7 +375,7 @@ def contact(pair: Contact) -> str:
     return f"{pair.a} and {pair.b} {how[pair.relation]}"
 
 
-def _file(export: Export) -> str:
+def _file(export: results.Export) -> str:
     if export.encoding == "base64":
         return f"{export.format}: made, {len(export.content)} characters in base64, which only the data has"
     return f"{export.format}:\n{export.content}"

@@ -10,7 +10,7 @@ from typing import Any, Literal, TypeAlias
 
 from aidl_lang.common import resources
 from aidl_lang.common.diagnostics import Diagnostic, Fix
-from aidl_lang.common.prose import rounded
+from aidl_lang.common.prose import rounded, shortened
 from aidl_lang.common.records import record
 from aidl_lang.common.source import Span
 from aidl_lang.geometry.boolean import Contact
@@ -120,11 +120,11 @@ def _finding(d: Diagnostic) -> Finding:
     return Finding(
         d.code,
         d.severity.value,
-        _cut(d.message),
+        shortened(d.message, _LONGEST),
         place(d.span) if d.span else None,
-        _cut(d.label),
-        [Related(place(label.span), _cut(label.text)) for label in d.secondary],
-        [_cut(hint) for hint in d.hints],
+        shortened(d.label, _LONGEST),
+        [Related(place(label.span), shortened(label.text, _LONGEST)) for label in d.secondary],
+        [shortened(hint, _LONGEST) for hint in d.hints],
         repair(d.fix) if d.fix else None,
     )
 
@@ -136,11 +136,7 @@ def place(span: Span) -> Place:
 
 def repair(fix: Fix) -> Repair:
     made = [Replacement(place(edit.span), edit.span.text, edit.replacement) for edit in fix.edits]
-    return Repair(_cut(fix.title), made)
-
-
-def _cut(text: str) -> str:
-    return text if len(text) <= _LONGEST else text[: _LONGEST - 1] + "…"
+    return Repair(shortened(fix.title, _LONGEST), made)
 
 
 def joined(blocks: Iterable[str]) -> str:
@@ -334,7 +330,6 @@ _LONGEST_EXAMPLE = 1_200
 
 
 def hits(query: str, most: int) -> list[Hit]:
-    """Returns the best hits, best first."""
     return [_of_code(about) if isinstance(about, str) else _of_entry(about) for about in search(query, most)]
 
 

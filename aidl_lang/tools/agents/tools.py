@@ -22,20 +22,6 @@ from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.export import OFFERED
 from aidl_lang.pipeline import Compiled
 from aidl_lang.tools.agents import drawing, results, workspace
-from aidl_lang.tools.agents.results import (
-    Checked,
-    Conflicts,
-    Drawn,
-    Edited,
-    Hits,
-    Measured,
-    Page,
-    Replacement,
-    data,
-    findings,
-    joined,
-    place,
-)
 from aidl_lang.tools.agents.workspace import RefusalError, Workspace, refusal
 from aidl_lang.tools.discretion import Reader
 from aidl_lang.tools.mending import Mended, mend
@@ -73,7 +59,7 @@ class Tools:
 
     def check(
         self, program: Program, files: Files = None, ranges: Annotated[bool, "Walk each param too."] = False
-    ) -> Checked:
+    ) -> results.Checked:
         """Find the mistakes in an AIDL program without solving it, each with its place, the reason and, where
         there is one, a fix; also the program with those fixes applied that can mean nothing else. Quick: use
         it after every edit, before compile. With ranges it is solved, and tells at which value of a param a
@@ -93,13 +79,13 @@ class Tools:
         if mended.fixes:
             left = compact(left_over) or "nothing is left to mend"
             blocks += [f"With these fixes: {', '.join(mended.fixes)}.", mended.source.text, f"Then: {left}"]
-        return Checked(
+        return results.Checked(
             not has_errors(found),
-            findings(found),
+            results.findings(found),
             list(mended.fixes),
             mended.source.text if mended.fixes else None,
-            findings(left_over) if mended.fixes else None,
-            text=joined(blocks),
+            results.findings(left_over) if mended.fixes else None,
+            text=results.joined(blocks),
         )
 
     def compile(
@@ -112,7 +98,7 @@ class Tools:
             str | None, "Of the model, only the structure at this dotted path and what is in it."
         ] = None,
         dimensioned: Annotated[bool, "Draw the dimensions of what is sized."] = False,
-    ) -> Drawn:
+    ) -> results.Drawn:
         """Solve and draw an AIDL program: its status and diagnostics, a picture, the bodies with their boxes,
         how they lie to each other, and what can still move. Look at the picture: a program that solves need
         not look right.
@@ -127,7 +113,7 @@ class Tools:
             Literal["full", "no-hierarchy", "no-constraints", "paper"],
             "The guide to a subset of the language.",
         ] = "full",
-    ) -> Page:
+    ) -> results.Page:
         """The AIDL language on a few pages. Read it before you write the first program."""
         from aidl_lang.tools.reference import guide
 
@@ -136,28 +122,28 @@ class Tools:
         sections = {part.partition("\n")[0].strip(): f"## {part}" for part in parts}
         title = head.partition("\n")[0].lstrip("# ")
         if section is None:
-            return Page(title, whole, list(sections), text=whole)
+            return results.Page(title, whole, list(sections), text=whole)
         named = next((name for name in sections if name.casefold() == section.strip().casefold()), None)
         if named is None:
             listed = ", ".join(ticked(sections))
             raise refusal("E0944", f"the guide has no section `{section[:100]}`", f"sections: {listed}")
-        return Page(named, sections[named], list(sections), text=sections[named])
+        return results.Page(named, sections[named], list(sections), text=sections[named])
 
     def search(
         self,
         query: Annotated[str, "A few words, as: round the corners of an outline."],
         limit: Annotated[int, "How many hits at most."] = 6,
-    ) -> Hits:
+    ) -> results.Hits:
         """Find names of the AIDL library (shapes, constraints, functions, words of the language) and codes of
         diagnostics by what they are about, each with its forms and an example.
         """
         found = results.hits(query[:1_000], max(1, min(limit, 50)))
         nothing = "nothing fits; try other words, or read the guide"
-        return Hits(found, text=joined(map(results.told, found)) or nothing)
+        return results.Hits(found, text=results.joined(map(results.told, found)) or nothing)
 
     def explain(
         self, name: Annotated[str, "A name of the library, a word of the language, or a code as E0301."]
-    ) -> Page:
+    ) -> results.Page:
         """All there is to say of one name of the AIDL library (forms, parts, what is held, an example), or of
         the code of a diagnostic (the mistake, and the mended program).
         """
@@ -166,18 +152,18 @@ class Tools:
 
         code = name.strip("[] ").upper()
         if code in resources.codes():
-            return Page(code, resources.page(code), text=resources.page(code))
+            return results.Page(code, resources.page(code), text=resources.page(code))
         known = reference()
         entry = known.find(name.strip()) or known.misspelt(name.strip())
         if entry is not None:
-            text = joined(entry_blocks(entry, "#"))
-            return Page(entry.name, text, text=text)
+            text = results.joined(entry_blocks(entry, "#"))
+            return results.Page(entry.name, text, text=text)
         hints = did_you_mean([*known.near(name[:100]), *resources.near(code[:100])][:6])
         raise refusal("E0912", f"there is no `{name[:100]}` to tell about", *hints, "`search` finds names")
 
     def measure(
         self, program: Program, path: Path = None, params: Params = None, files: Files = None
-    ) -> Measured:
+    ) -> results.Measured:
         """Measure what an AIDL program draws: area, perimeter, centroid, box, moments of inertia, the
         thinnest wall and the narrowest gap, volume and mass, of the whole and of each body or of the part at
         a path, and the gaps and overlaps between bodies.
@@ -191,7 +177,7 @@ class Tools:
         parts, whole = found.parts[:most], found.whole
         is_all = not found.is_partial and len(found.pairs) <= most
         diagnostics = [*compiled.diagnostics, *reader.diagnostics(found.notes)]
-        report = joined(
+        report = results.joined(
             [
                 "\n".join(drawing.measured(part) for part in [whole, *(p for p in parts if p is not whole)]),
                 drawing.left_out("bodies", len(found.parts) - len(parts)),
@@ -199,13 +185,13 @@ class Tools:
                 compact(diagnostics),
             ]
         )
-        return Measured(
-            data(whole.to_dict()),
-            [data(part.to_dict()) for part in parts],
+        return results.Measured(
+            results.data(whole.to_dict()),
+            [results.data(part.to_dict()) for part in parts],
             pairs,
             is_all,
             list(found.alone[:most]),
-            findings(diagnostics),
+            results.findings(diagnostics),
             text=report,
         )
 
@@ -218,7 +204,7 @@ class Tools:
             "The new default: a number in mm or degrees, or as a text: 20cm, 80 + 20, 1/2in.",
         ],
         files: Files = None,
-    ) -> Edited:
+    ) -> results.Edited:
         """Change the default of a param in the text of an AIDL program and nothing else; solve both versions
         and tell what moved, grew and changed. Refuses a value outside the range of the param.
         """
@@ -232,17 +218,19 @@ class Tools:
         workspace.require_in_range(after, Span(changed, start, start + len(edit.replacement)))
         changes = _changes(before, after)
         lead = f"line {edit.span.line}: `{edit.span.text}` became `{edit.replacement}`; {after.status}"
-        return Edited(
+        return results.Edited(
             after.ok,
             drawing.status(after),
             text,
-            Replacement(place(edit.span), edit.span.text, edit.replacement),
+            results.Replacement(results.place(edit.span), edit.span.text, edit.replacement),
             changes,
-            findings(after.diagnostics),
-            text=joined([lead, changes, compact(after.diagnostics), text]),
+            results.findings(after.diagnostics),
+            text=results.joined([lead, changes, compact(after.diagnostics), text]),
         )
 
-    def explain_conflict(self, program: Program, params: Params = None, files: Files = None) -> Conflicts:
+    def explain_conflict(
+        self, program: Program, params: Params = None, files: Files = None
+    ) -> results.Conflicts:
         """Tell why an AIDL program does not solve: the smallest set of constraints that cannot hold together,
         what each would need, edits that mend it and whether the program solves with them, and the degrees of
         freedom that are left. Mend one of them; do not delete constraints. For a program that solves: what is
@@ -257,13 +245,13 @@ class Tools:
         blocks = [*map(drawing.in_lines, found), drawing.freedom(compiled), compact(others)]
         if not found:
             blocks.insert(0, _WITHOUT_CONFLICT.get(compiled.status, "no conflict could be told apart"))
-        return Conflicts(
+        return results.Conflicts(
             drawing.status(compiled),
             found,
             compiled.model.degrees if compiled.model else None,
             drawing.motions(compiled),
-            findings(others),
-            text=joined(blocks),
+            results.findings(others),
+            text=results.joined(blocks),
         )
 
     def _compiled(self, program: str, params: Params, files: Files) -> tuple[SourceFile, Compiled, Reader]:

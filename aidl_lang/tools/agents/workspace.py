@@ -169,7 +169,8 @@ def _added(zero: str, expression: str) -> float | str:
     known, found = pipeline.knobs(source)
     wrong = [each for each in found if each.is_error]
     if wrong or len(known) != 1 or not _is_alone(source, len(start), len(expression)):
-        return _why(wrong)
+        # of syntax, the places are not those of what was typed
+        return _NONE if not wrong or wrong[0].code.startswith("E01") else wrong[0].message
     value = known[0].value
     return value if isinstance(value, float) else _NONE
 
@@ -178,12 +179,6 @@ def _is_alone(source: SourceFile, start: int, length: int) -> bool:
     statements = parser.parse(source).module.statements
     value = statements[0].value if isinstance(statements[0], ast.Param) else None
     return len(statements) == 2 and value is not None and value.span.end >= start + length
-
-
-def _why(wrong: list[Diagnostic]) -> str:
-    if not wrong or wrong[0].code.startswith("E01"):  # of syntax: the places are not those of what was typed
-        return _NONE
-    return wrong[0].message
 
 
 # --- Changes the default of a `param` in the text of a program, and nothing else of it.

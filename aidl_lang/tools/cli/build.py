@@ -17,7 +17,7 @@ from aidl_lang.common.prose import counted, first_few
 from aidl_lang.common.records import record
 from aidl_lang.common.world import is_data, may_be_read
 from aidl_lang.tools.cli import files
-from aidl_lang.tools.cli.files import UseError, exit_code, say, show
+from aidl_lang.tools.cli.files import UseError, exit_code, pass_by, say, show
 from aidl_lang.tools.cli.options import (
     add_drawing,
     add_look,
@@ -71,7 +71,6 @@ class BuildResult:
         return exit_code(self.compiled.errors) or (0 if self.compiled.ok else 1)
 
     def motions(self, most: int) -> list[str]:
-        """Returns the remaining motions, one sentence a line."""
         from aidl_lang.geometry.freedom import report
 
         model = self.compiled.model
@@ -177,17 +176,15 @@ def _require_apart(names: Sequence[str]) -> None:
 
 
 class _Progress:
-    """Prints on a terminal how many outlines are widened, if that takes over a second, and removes it."""
+    """Tells how many outlines are widened, if that takes over a second."""
 
     def __init__(self) -> None:
         self._start: float | None = None
 
     def __call__(self, done: int, count: int) -> None:
-        now = time.monotonic()
-        self._start = self._start or now
-        if now - self._start > _PATIENCE and sys.stderr.isatty():
-            text = f"{done} of {count} outlines widened by the cut" if done < count else ""
-            print(f"\r\x1b[K{text}", end="", file=sys.stderr, flush=True)
+        self._start = self._start or time.monotonic()
+        if time.monotonic() - self._start > _PATIENCE:
+            pass_by(f"{done} of {count} outlines widened by the cut" if done < count else "")
 
 
 def require_one(name: str, count: int) -> None:
@@ -263,7 +260,6 @@ def register_watch(parser: argparse.ArgumentParser) -> None:
 
 
 def run_watch(arguments: argparse.Namespace) -> int:
-    """Runs until interrupted."""
     from watchfiles import watch
 
     from aidl_lang.solver.hierarchy import Memory
@@ -383,14 +379,13 @@ _SAMPLES = 4
 
 def register_show(parser: argparse.ArgumentParser) -> None:
     """`aidl show`: a preview of the drawing in the terminal."""
-    from aidl_lang.tools.terminal import PROTOCOLS
-
     add_program(parser)
     add_params(parser)
     add_look(parser)
     value(parser, "--width", "COLUMNS", "columns to fill at most (default: the terminal)", count_to(1000))
+    protocols = ("auto", "kitty", "iterm", "sixel", "blocks", "braille", "ascii")
     about = "how to show it (default: auto, the best that the terminal is known for)"
-    choice(parser, "--protocol", ("auto", *PROTOCOLS), about)
+    choice(parser, "--protocol", protocols, about)
 
 
 def run_show(arguments: argparse.Namespace) -> int:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import sys
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
@@ -12,60 +11,58 @@ from aidl_lang.common.prose import counted, literal
 from aidl_lang.common.records import record
 from aidl_lang.common.source import SourceFile
 from aidl_lang.tools.cli import files
-from aidl_lang.tools.cli.files import UseError, exit_code, print_json, say, show
+from aidl_lang.tools.cli.files import UseError, exit_code, pass_by, print_json, say, show
 from aidl_lang.tools.cli.options import add_program, add_variant, flag
 
 if TYPE_CHECKING:
     from aidl_lang.building.model import Knob
     from aidl_lang.common.world import World
     from aidl_lang.pipeline import Compiled, Settings
-    from aidl_lang.tools.ends import Sweep
-    from aidl_lang.tools.ranges import Ranges
+    from aidl_lang.tools.ends import Sweep, SweepJob
 
 
 # --- The ends and ranges of params, for `aidl check --ends` and `--range`: tried with progress, and reported.
 
 
-def _swept(
-    source: SourceFile, world: World, settings: Settings, compiled: Compiled, walks: bool | str
-) -> Sweep | Ranges:
-    """Tries a working program at the ends of its params, or between them, with progress on a terminal."""
-    from aidl_lang.tools.ends import SweepJob, sweep
+@record()
+class _Swept:
+    """What came of trying params: whether all is well, in lines, in one line, and as data."""
 
-    job = SweepJob(source.name, source.text, world, settings)
-    try:
-        if not walks:
-            return sweep(job, compiled.knobs, compiled.diagnostics, partial(_progress, "ends tried"))
-        from aidl_lang.tools.ranges import ranges
+    ok: bool
+    lines: list[str]
+    summary: str
+    data: dict[str, Any]
 
-        told = partial(_progress, "params walked")
-        return ranges(job, compiled.knobs, told, in_pairs=walks == "pairs")
-    finally:
-        _progress("", 0, 0)
+
+def _ends(name: str, job: SweepJob, compiled: Compiled) -> _Swept:
+    from aidl_lang.tools.ends import described, sentence, sweep
+
+    found = sweep(job, compiled.knobs, compiled.diagnostics, partial(_progress, "ends tried"))
+    told = [(each, sentence(each, name)) for each in found.turned]
+    data = {
+        "file": name,
+        "ok": found.ok,
+        "tried": described(found),
+        "without_range": [knob.path for knob in found.rangeless],
+        "left": found.left,
+        "compiled": found.compiled,
+        "seconds": round(found.seconds, 3),
+    }
+    lines = [f"{'' if each.ok else 'error '}{text}" for each, text in told if text]
+    return _Swept(found.ok, lines, _summary(found), data)
+
+
+def _walks(name: str, job: SweepJob, compiled: Compiled, in_pairs: bool) -> _Swept:
+    from aidl_lang.tools.ranges import described, ranges, sentences, summary, together
+
+    found = ranges(job, compiled.knobs, partial(_progress, "params walked"), in_pairs=in_pairs)
+    lines = [text for walk in found.walks for text in sentences(walk)]
+    lines += [text for pair in found.pairs for text in together(pair)]
+    return _Swept(found.ok, lines, summary(found), described(name, found))
 
 
 def _progress(what: str, done: int, count: int) -> None:
-    """Prints progress over the last line of a terminal; removes it when done."""
-    if sys.stderr.isatty():
-        text = f"{done} of {count} {what}" if count else ""
-        print(f"\r\x1b[K{text}", end="", file=sys.stderr, flush=True)
-
-
-def tell(name: str, sweep: Sweep | Ranges) -> None:
-    from aidl_lang.common.render import escape
-    from aidl_lang.tools.ends import Sweep, sentence
-
-    if isinstance(sweep, Sweep):
-        told = [(each, sentence(each, name)) for each in sweep.turned]
-        lines, last = [f"{'' if each.ok else 'error '}{text}" for each, text in told if text], _summary(sweep)
-    else:
-        from aidl_lang.tools.ranges import sentences, summary, together
-
-        lines, last = [text for walk in sweep.walks for text in sentences(walk)], summary(sweep)
-        lines += [text for pair in sweep.pairs for text in together(pair)]
-    for line in lines:
-        print(f"{name}: {escape(line)}")
-    say(f"{name}: {last}")
+    pass_by(f"{done} of {count} {what}")
 
 
 def _summary(sweep: Sweep) -> str:
@@ -85,24 +82,6 @@ def _summary(sweep: Sweep) -> str:
     return "; ".join(parts)
 
 
-def data(name: str, sweep: Sweep | Ranges) -> dict[str, Any]:
-    from aidl_lang.tools.ends import Sweep, described
-
-    if not isinstance(sweep, Sweep):
-        from aidl_lang.tools.ranges import described as walked
-
-        return walked(name, sweep)
-    return {
-        "file": name,
-        "ok": sweep.ok,
-        "tried": described(sweep),
-        "without_range": [knob.path for knob in sweep.rangeless],
-        "left": sweep.left,
-        "compiled": sweep.compiled,
-        "seconds": round(sweep.seconds, 3),
-    }
-
-
 _WHY = "it changes what you wrote, so the choice is yours", "it would make things worse"
 """Why `--fix` leaves a fix that is not sure, and one that is."""
 
@@ -115,7 +94,7 @@ class _Checked:
     fixes: tuple[str, ...] = ()
     status: str = ""
     was_read: bool = True
-    sweep: Sweep | Ranges | None = None
+    swept: _Swept | None = None
 
 
 def register_check(parser: argparse.ArgumentParser) -> None:
@@ -144,9 +123,9 @@ def run_check(arguments: argparse.Namespace) -> int:
         found += checked.diagnostics
         fixes += [{"file": name, "title": title} for title in checked.fixes]
         is_solved = is_solved and checked.status == "solved"
-        if checked.sweep is not None:
-            is_well = is_well and checked.sweep.ok
-            swept.append(data(name, checked.sweep))
+        if checked.swept is not None:
+            is_well = is_well and checked.swept.ok
+            swept.append(checked.swept.data)
         if not arguments.json:
             _tell(name, checked, arguments)
     if arguments.json:
@@ -174,7 +153,7 @@ def _check(name: str, arguments: argparse.Namespace) -> _Checked:
     try:
         source, world = files.read(name), files.world(name)
         if not arguments.fix:
-            return _found(source, world, settings, arguments)
+            return _found(name, source, world, settings, arguments)
         from aidl_lang.tools.mending import mend
 
         mended = mend(source, world, settings)
@@ -182,12 +161,13 @@ def _check(name: str, arguments: argparse.Namespace) -> _Checked:
             files.rewrite(name, mended.source.text.encode())
         if has_errors(mended.diagnostics):
             return _Checked(mended.diagnostics, mended.fixes)  # the rest would add nothing
-        return _found(mended.source, world, settings, arguments, mended.fixes)
+        return _found(name, mended.source, world, settings, arguments, mended.fixes)
     except UseError as reason:
         return _Checked([reason.diagnostic], was_read=False)
 
 
 def _found(
+    name: str,
     source: SourceFile,
     world: World,
     settings: Settings,
@@ -200,14 +180,23 @@ def _found(
         return _Checked(pipeline.check(source, world, settings), fixes)
     compiled = pipeline.compile(source, world, settings=settings)
     status = compiled.status if compiled.model is not None else ""
-    sweep = None
+    swept = None
     if compiled.ok and (arguments.ends or arguments.range):
-        sweep = _swept(source, world, settings, compiled, arguments.range)
-    return _Checked(compiled.diagnostics, fixes, status, sweep=sweep)
+        from aidl_lang.tools.ends import SweepJob
+
+        job = SweepJob(source.name, source.text, world, settings)
+        try:
+            if arguments.ends:
+                swept = _ends(name, job, compiled)
+            else:
+                swept = _walks(name, job, compiled, arguments.range == "pairs")
+        finally:
+            pass_by("")
+    return _Checked(compiled.diagnostics, fixes, status, swept=swept)
 
 
 def _tell(name: str, checked: _Checked, arguments: argparse.Namespace) -> None:
-    from aidl_lang.common.render import summary
+    from aidl_lang.common.render import escape, summary
 
     for title in checked.fixes:
         say(f"{name}: fixed: {title}")
@@ -217,11 +206,13 @@ def _tell(name: str, checked: _Checked, arguments: argparse.Namespace) -> None:
     if checked.was_read:
         unsolved = "" if checked.status else "; nothing was solved"
         what = "the ends of its params were not tried" if arguments.ends else "its params were not walked"
-        is_left = (arguments.ends or arguments.range) and checked.sweep is None
+        is_left = (arguments.ends or arguments.range) and checked.swept is None
         untried = f"; {what}" if is_left else ""
         say(f"{name}: {summary(checked.diagnostics) or 'no mistakes found'}{unsolved}{untried}")
-    if checked.sweep is not None:
-        tell(name, checked.sweep)
+    if checked.swept is not None:
+        for line in checked.swept.lines:
+            print(f"{name}: {escape(line)}")
+        say(f"{name}: {checked.swept.summary}")
 
 
 def register_fmt(parser: argparse.ArgumentParser) -> None:

@@ -49,6 +49,12 @@ def say(line: str, end: str = "\n") -> None:
     print(line, end=end, file=sys.stderr)
 
 
+def pass_by(line: str) -> None:
+    """Prints a line on a terminal in place of the last one; an empty one removes it."""
+    if sys.stderr.isatty():
+        print(f"\r\x1b[K{line}", end="", file=sys.stderr, flush=True)
+
+
 def print_json(found: object, indent: int = 2) -> None:
     import json
 

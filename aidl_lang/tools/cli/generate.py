@@ -7,7 +7,6 @@ import difflib
 import json
 import os
 import re
-import sys
 import time
 from dataclasses import replace
 from importlib import import_module
@@ -16,10 +15,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from aidl_lang.common.diagnostics import AidlError
-from aidl_lang.common.prose import counted, first_few
+from aidl_lang.common.prose import counted, first_few, shortened
 from aidl_lang.common.records import record
 from aidl_lang.tools.cli import files
-from aidl_lang.tools.cli.files import UseError, say, show
+from aidl_lang.tools.cli.files import UseError, pass_by, say, show
 from aidl_lang.tools.cli.options import add_outputs, add_provider, count_to, flag, provider, sampling, value
 
 if TYPE_CHECKING:
@@ -114,13 +113,12 @@ class _Heard:
 
     def __call__(self, attempt: int, text: str) -> None:
         self.heard += len(text)
-        if sys.stderr.isatty() and self.heard >= self.shown + 50:
+        if self.heard >= self.shown + 50:
             self.shown = self.heard
-            say(f"\r{self.name}attempt {attempt}: {self.heard:,} characters …", end="")
+            pass_by(f"{self.name}attempt {attempt}: {self.heard:,} characters …")
 
     def erase(self) -> None:
-        if self.shown:
-            say("\r\x1b[K", end="")
+        pass_by("")
         self.heard = self.shown = 0
 
 
@@ -206,8 +204,7 @@ def _deliver(arguments: argparse.Namespace, places: _Places, generation: Generat
     verdict = generation.verdict
     if verdict is None:
         last = re.sub(r"\s+", " ", generation.attempts[-1].reply.text.strip())
-        begins = last if len(last) <= 80 else last[:79] + "…"
-        say(f"{name}no reply held a program; the last one begins: {begins!r}")
+        say(f"{name}no reply held a program; the last one begins: {shortened(last, 80)!r}")
         return 1
     program = verdict.program
     if arguments.edit:

@@ -110,7 +110,6 @@ def add_look(parser: argparse.ArgumentParser) -> None:
 
 
 def add_outputs(parser: argparse.ArgumentParser, help: str) -> None:
-    """Adds the option for where to write, which may be given several times."""
     parser.add_argument("-o", "--output", action="append", default=[], metavar="OUT", help=help)
 
 
@@ -129,7 +128,9 @@ def add_drawing_options(parser: argparse.ArgumentParser) -> None:
     add("--format", "SUFFIX", "format of outputs whose name does not tell it")
     add_look(parser)
     add_pixels(parser)
-    add("--thickness", "MM", "thickness of parts without `@thickness`, for STEP, STL and 3MF", _thickness)
+    about = "thickness of parts without `@thickness`, for STEP, STL and 3MF"
+    thickness = _number(lambda value: 0 < value < 1e9, "millimetres above 0, as in 3", "mm")
+    add("--thickness", "MM", about, thickness)
     add(
         "--profile",
         "NAME",
@@ -160,7 +161,6 @@ def add_drawing_options(parser: argparse.ArgumentParser) -> None:
 
 
 def add_provider(parser: argparse.ArgumentParser) -> None:
-    """Adds the options for the language model; see `provider` and `sampling`."""
     group = parser.add_argument_group("the model")
     add = partial(value, group)
     add(
@@ -174,7 +174,8 @@ def add_provider(parser: argparse.ArgumentParser) -> None:
     add("--model", "NAME", "the model (default: $AIDL_MODEL)", str, "")
     add("--base-url", "URL", "of the server, as in http://localhost:11434/v1", str, "")
     add("--seed", "N", "of the reply, for servers that have one", int)
-    add("--temperature", "T", "0 is the least random", _temperature)
+    temperature = _number(lambda value: 0 <= value <= 2, "a number from 0 to 2")
+    add("--temperature", "T", "0 is the least random", temperature)
     add("--max-tokens", "N", "of one reply", count_to(1_000_000))
     add(
         "--constrain",
@@ -183,7 +184,8 @@ def add_provider(parser: argparse.ArgumentParser) -> None:
         "or as in vllm:llguidance where that engine decodes",
         _server,
     )
-    add("--timeout", "SECONDS", "how long the model may be silent (default: 600)", _seconds, 600.0)
+    seconds = _number(lambda value: 0 < value <= 86_400, "seconds above 0 and up to a day", "s")
+    add("--timeout", "SECONDS", "how long the model may be silent (default: 600)", seconds, 600.0)
     about = "dollars per million tokens, where the server does not tell the cost (default: $AIDL_PRICE)"
     add("--price", "IN/OUT", about, _price)
 
@@ -216,18 +218,19 @@ def _variant(text: str) -> Variant:
     return Variant(_one_of(list(Variant), text))
 
 
-def _number(text: str, fits: Callable[[float], bool], wanted: str, unit: str = "") -> float:
-    try:
-        value = float(text.removesuffix(unit))
-    except ValueError:
-        value = math.nan  # which is in no range
-    if not fits(value):
-        raise argparse.ArgumentTypeError(f"expected {wanted}, not `{text}`")
-    return value
+def _number(fits: Callable[[float], bool], wanted: str, unit: str = "") -> Callable[[str], float]:
+    """Returns a parser of numbers that fit, with their unit or without."""
 
+    def read(text: str) -> float:
+        try:
+            value = float(text.removesuffix(unit))
+        except ValueError:
+            value = math.nan  # which is in no range
+        if not fits(value):
+            raise argparse.ArgumentTypeError(f"expected {wanted}, not `{text}`")
+        return value
 
-def _thickness(text: str) -> float:
-    return _number(text, lambda value: 0 < value < 1e9, "millimetres above 0, as in 3", "mm")
+    return read
 
 
 def _tolerance(text: str) -> float:
@@ -244,10 +247,6 @@ def _layers(text: str) -> frozenset[str]:
     return frozenset(_one_of(known, layer.strip()) for layer in text.split(",") if layer.strip())
 
 
-def _temperature(text: str) -> float:
-    return _number(text, lambda value: 0 <= value <= 2, "a number from 0 to 2")
-
-
 def count_to(most: int, least: int = 1) -> Callable[[str], int]:
     """Returns a parser of whole numbers from `least` to `most`."""
 
@@ -257,10 +256,6 @@ def count_to(most: int, least: int = 1) -> Callable[[str], int]:
         return int(text)
 
     return read
-
-
-def _seconds(text: str) -> float:
-    return _number(text, lambda value: 0 < value <= 86_400, "seconds above 0 and up to a day", "s")
 
 
 def _one_of(known: Collection[str], text: str) -> str:

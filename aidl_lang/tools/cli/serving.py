@@ -93,7 +93,6 @@ def register_preview(parser: argparse.ArgumentParser) -> None:
 
 
 def run_preview(arguments: argparse.Namespace) -> int:
-    """Runs until interrupted."""
     require("the preview", "pygls", "starlette", "uvicorn", "websockets")
     files.require_watchable(arguments.file)
     hint = "without `--port` a free one is taken"

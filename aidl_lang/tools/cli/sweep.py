@@ -32,7 +32,7 @@ from aidl_lang.tools.cli.options import (
 if TYPE_CHECKING:
     from aidl_lang.tools.sweeping.outputs import Outputs, Row
     from aidl_lang.tools.sweeping.plan import Plan, Rows
-    from aidl_lang.tools.sweeping.session import Job, Progress, Session
+    from aidl_lang.tools.sweeping.session import Job, Progress, Sweep
 
 
 # --- How far a sweep is: a line on a terminal, or JSON lines for programs.
@@ -192,7 +192,7 @@ def register_sweep(parser: argparse.ArgumentParser) -> None:
 
 def run_sweep(arguments: argparse.Namespace) -> int:
     from aidl_lang.common.processes import prepared
-    from aidl_lang.tools.sweeping.session import LOCAL, Session, engine, preloads
+    from aidl_lang.tools.sweeping.session import LOCAL, Sweep, engine, preloads
 
     if arguments.file == files.STANDARD and arguments.resume:
         raise UseError("E0971", "a sweep of standard input cannot go on", "give the program a file")
@@ -205,25 +205,23 @@ def run_sweep(arguments: argparse.Namespace) -> int:
         logging.getLogger("distributed").setLevel(logging.CRITICAL)  # what there is to say is said here
     try:
         job = _job(arguments, source)
-        workers = engine(arguments.on, arguments.jobs, len(job.plan), arguments.output)
     except AidlError as reason:
         show(reason.diagnostics)
         return exit_code(reason.diagnostics)
-    session = Session(job, workers)
-    try:
-        with progress(arguments.progress) as session.listen:
-            for _ in session:
-                pass
-    except AidlError as reason:
-        show(reason.diagnostics)
-        if session.rows:
+    start = partial(engine, arguments.on, arguments.jobs, len(job.plan), arguments.output)
+    with Sweep(job, start) as session:
+        try:
+            with progress(arguments.progress) as session.listen:
+                for _ in session:
+                    pass
+        except AidlError as reason:
+            show(reason.diagnostics)
+            if session.rows:
+                _tell_unfinished(session)
+            return exit_code(reason.diagnostics)
+        except KeyboardInterrupt:
             _tell_unfinished(session)
-        return exit_code(reason.diagnostics)
-    except KeyboardInterrupt:
-        _tell_unfinished(session)
-        raise
-    finally:
-        workers.close()
+            raise
     _tell(session, arguments)
     return 0 if session.is_complete and not session.failed else 1
 
@@ -295,7 +293,7 @@ def _plan(arguments: argparse.Namespace, knobs: Any) -> Plan:
     return planned(knobs, axes, rows, (arguments.random, arguments.seed) if is_drawn else None)
 
 
-def _tell(session: Session, arguments: argparse.Namespace) -> None:
+def _tell(session: Sweep, arguments: argparse.Namespace) -> None:
     failures = [row for row in session.rows if not row.ok]
     failures.sort(key=lambda row: row.variant.number)
     turns = session.turns
@@ -317,7 +315,7 @@ def _tell(session: Session, arguments: argparse.Namespace) -> None:
     say(f"{arguments.file}: {line(session)}")
 
 
-def line(session: Session) -> str:
+def line(session: Sweep) -> str:
     count, done = len(session.job.plan), len(session.rows)
     parts = [counted(count, "variant") if done == count else f"{done} of {counted(count, 'variant')}"]
     parts.append(f"{done - session.failed} well, {session.failed or 'none'} failing")
@@ -352,7 +350,7 @@ def _short(text: str, most: int = 200) -> str:
     return text if len(text) <= most else f"{text[:most]}… ({len(text)} characters)"
 
 
-def _tell_unfinished(session: Session) -> None:
+def _tell_unfinished(session: Sweep) -> None:
     count = len(session.job.plan)
     if session.job.cache:
         where = f"`{session.job.cache}` has what is done"
@@ -363,7 +361,7 @@ def _tell_unfinished(session: Session) -> None:
     say(f"{len(session.rows)} of {counted(count, 'variant')} done; {where}")
 
 
-def _summary(session: Session, failures: Sequence[Row], turns: Sequence[str]) -> dict[str, Any]:
+def _summary(session: Sweep, failures: Sequence[Row], turns: Sequence[str]) -> dict[str, Any]:
     return {
         "variants": len(session.job.plan),
         "done": len(session.rows),

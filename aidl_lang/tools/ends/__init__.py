@@ -50,7 +50,6 @@ def ends(knob: Knob) -> list[Value]:
 
 
 def has_range(knob: Knob) -> bool:
-    """True for a param with values to try."""
     return bool(ends(knob))
 
 

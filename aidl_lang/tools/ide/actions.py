@@ -81,7 +81,6 @@ def drawn_alike(one: View, other: View) -> bool:
 
 
 def first_error(view: View) -> str:
-    """Returns the first error of a program, in one sentence."""
     return next((d.message for d in view.diagnostics if d.is_error), "the drawing would change")
 
 

@@ -116,7 +116,6 @@ class Guess:
 
     @property
     def unknowns(self) -> frozenset[Unknown]:
-        """The unknowns that the number became."""
         return frozenset(ex.unknowns(use.became for use in self.uses))
 
     def valued(self, evaluate: Value) -> float | None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from enum import StrEnum
+from typing import TypeAlias
 
 from aidl_lang.building.model import Knob
 from aidl_lang.common.diagnostics import Edit
@@ -27,21 +27,17 @@ _DECIMALS = 3
 _ARROW = "→"
 
 
-class InlayKind(StrEnum):
-    SOLVED = "what a number was solved to"
-    READING = "how an ambiguous call was taken"
-    PARAM = "what a param was set to from outside"
-
-
 @record()
 class Inlay:
-    """A hint shown at an offset; `edits` write it into the text, if that can be done."""
+    """A hint shown at an offset; `edits` write it into the text, if that can be done. One that `is_reading`
+    tells how an ambiguous call was taken, others tell values.
+    """
 
     offset: int
     text: str
-    kind: InlayKind
     tooltip: str
     edits: tuple[Edit, ...] = ()
+    is_reading: bool = False
 
 
 def inlays(view: View, span: Span | None = None) -> list[Inlay]:
@@ -59,7 +55,7 @@ def _solved(view: View) -> Iterator[Inlay]:
             continue
         text = f"{_ARROW} {_shown(guess.solved)}{guess.behind}"
         edits = () if guess.is_shared else (Edit(guess.span, number_for(guess, guess.solved)),)
-        yield Inlay(guess.span.end, text, InlayKind.SOLVED, _told(guess), edits)
+        yield Inlay(guess.span.end, text, _told(guess), edits)
 
 
 def _told(guess: Guess) -> str:
@@ -74,7 +70,7 @@ def _readings(view: View, model: SolvedModel) -> Iterator[Inlay]:
         if reading.span.source is view.source:
             said = f"`{reading.span.one_line}` has several meanings"
             about = f"{said}. By what is written it is {reading.text}."
-            yield Inlay(reading.span.end, reading.text, InlayKind.READING, about)
+            yield Inlay(reading.span.end, reading.text, about, is_reading=True)
 
 
 def _set_from_outside(view: View, solved: Solved) -> Iterator[Inlay]:
@@ -88,7 +84,7 @@ def _set_from_outside(view: View, solved: Solved) -> Iterator[Inlay]:
             unit = f" {knob.unit}" if knob.unit else ""
             text = f"{_ARROW} {_shown(knob.value)}{unit}"
             place = declared.value.span.end
-            yield Inlay(place, text, InlayKind.PARAM, f"`{knob.path}` is set from outside")
+            yield Inlay(place, text, f"`{knob.path}` is set from outside")
 
 
 def _as_written(node: ast.Expression) -> Scalar | None:
@@ -140,6 +136,10 @@ def between(view: View, settings: Settings, progress: Callable[[int, int], None]
     return ranges(job, view.knobs, progress, seconds)
 
 
+Lens: TypeAlias = tuple[Span, str]
+"""A place, and the line above it."""
+
+
 def end_lenses(view: View, found: Found | None) -> list[Lens]:
     """Returns one lens above each param that was tried; before, one that offers to try."""
     if not can_be_tried(view):
@@ -153,7 +153,7 @@ def _offer(view: View) -> Iterator[Lens]:
     if own and own[0].span is not None:
         count = len({k.path for k in knobs})
         title = f"try the ends of {count} params" if count > 1 else "try the ends of this param"
-        yield Lens(own[0].span, title)
+        yield own[0].span, title
 
 
 def _is_own(view: View, knob: Knob) -> bool:
@@ -169,7 +169,7 @@ def _told_at_ends(view: View, found: Found) -> Iterator[Lens]:
     for span, by_path in by_place.items():
         name = view.source.name
         texts = dict.fromkeys(_title(turned, walks.get(p), name) for p, turned in by_path.items())
-        yield Lens(span, " · ".join(texts))
+        yield span, " · ".join(texts)
 
 
 def _title(turned: Sequence[Turned], walk: Walk | None, name: str) -> str:
@@ -193,14 +193,6 @@ _NAMED = 3
 _HELD = "fully constrained"
 
 
-@record()
-class Lens:
-    """A line above the name of a structure or a param."""
-
-    span: Span
-    title: str
-
-
 def lenses(view: View) -> list[Lens]:
     """Returns one lens for each structure of the solved text; none while it is being solved."""
     solved = view.solved
@@ -217,7 +209,7 @@ def lenses(view: View) -> list[Lens]:
             if found[0] is model.root:
                 as_whole = "moves only as a whole" if model.degrees else _HELD
                 title = f"{_status(solved)} · {title.replace(_HELD, as_whole)}"
-            shown.append(Lens(node.name.span, title))
+            shown.append((node.name.span, title))
     return shown
 
 

@@ -124,17 +124,10 @@ def _declared(view: View, node: ast.Statement) -> Iterator[Entry]:
 _CLOSES = {"}": "{", "]": "[", ")": "("}
 
 
-@record()
-class Fold:
-    """Lines from `start`, which stays visible, to `end`, from 1; a `region`, `comment` or `imports`."""
-
-    start: int
-    end: int
-    kind: str = "region"
-
-
-def folds(view: View) -> list[Fold]:
-    """Returns folds by their first line; of two that begin in one line the longer."""
+def folds(view: View) -> list[tuple[int, int, str]]:
+    """Returns folds by their first line, which stays visible; of two that begin in one line the longer: both
+    lines, from 1, and `region`, `comment` or `imports`.
+    """
     tokens = view.tokens
 
     def line(offset: int) -> int:
@@ -142,15 +135,15 @@ def folds(view: View) -> list[Fold]:
 
     comments = [(line(c.span.start), line(c.span.end)) for c in tokens.comments]
     imports = [(line(t.start), line(t.start)) for t in tokens.tokens if t.kind == "import"]
-    found: dict[int, Fold] = {}
-    for each in (
-        *(Fold(a, b, "comment") for a, b in _runs(comments)),
-        *(Fold(a, b, "imports") for a, b in _runs(imports)),
-        *(Fold(line(a), line(b) - 1) for a, b in _brackets(tokens.tokens)),
+    found: dict[int, tuple[int, int, str]] = {}
+    for start, end, kind in (
+        *((a, b, "comment") for a, b in _runs(comments)),
+        *((a, b, "imports") for a, b in _runs(imports)),
+        *((line(a), line(b) - 1, "region") for a, b in _brackets(tokens.tokens)),
     ):
-        if each.end > each.start and (known := found.get(each.start, each)).end <= each.end:
-            found[known.start] = each
-    return [found[start] for start in sorted(found)]
+        if end > start and (start not in found or found[start][1] <= end):
+            found[start] = start, end, kind
+    return sorted(found.values())
 
 
 def _brackets(tokens: Iterable[Token]) -> Iterator[tuple[int, int]]:
@@ -306,16 +299,10 @@ def _lines(colored: Colored) -> Iterator[Colored]:
 # --- The colours in `@color(…)`, and other colours written in their place.
 
 
-@record()
-class Color:
-    """The place of a colour in the text, and its red, green and blue from 0 to 255."""
-
-    span: Span
-    rgb: tuple[int, int, int]
-
-
-def colors(view: View) -> list[Color]:
-    """Returns the literal colours of a text, in its order."""
+def colors(view: View) -> list[tuple[Span, tuple[int, int, int]]]:
+    """Returns the literal colours of a text, in its order: the place of each, and red, green and blue from 0
+    to 255.
+    """
     found = []
     for node in ast.walk(view.module):
         if isinstance(node, ast.Attribute) and word_meant(node.name.text, ATTRIBUTES) in ("color", "colour"):
@@ -323,7 +310,7 @@ def colors(view: View) -> list[Color]:
             color = css_color(values) if values and None not in values else None
             if color is not None:
                 span = node.arguments[0].value.span.to(node.arguments[-1].value.span)
-                found.append(Color(span, rgb(color)))
+                found.append((span, rgb(color)))
     return found
 
 

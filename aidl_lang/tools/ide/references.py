@@ -112,7 +112,6 @@ def _named_arguments(view: View, call: ast.Call) -> Iterator[Mention]:
 
 
 def parameter(view: View, signature: Signature, name: str) -> Symbol:
-    """Returns the parameter of a callable by its name."""
     node = parameter_node(signature, name)
     if node is not None and signature.node is not None:
         view.resolution.scope_of(signature.node)  # which enters the names of a library definition
@@ -312,7 +311,6 @@ def _require_same_meaning(
 
 
 def _difference(old: View, new: View, edits: Mapping[Path, tuple[Edit, ...]]) -> str | None:
-    """Describes a name whose meaning changed."""
     expected = {
         _moved((old.path, start), edits)[1]: _moved(what, edits) if isinstance(what, tuple) else what
         for start, what in _meanings(old).items()

@@ -10,11 +10,12 @@ from aidl_lang.checking.calls import arguments
 from aidl_lang.checking.symbols import SymbolScope
 from aidl_lang.checking.types import AnyType, ListType, NumberType, PointType, Signature, Type, accepts
 from aidl_lang.common.names import fold
+from aidl_lang.common.prose import shortened
 from aidl_lang.common.records import record
 from aidl_lang.parser import standing_before
 from aidl_lang.syntax import ast
 from aidl_lang.syntax.tables import Token
-from aidl_lang.tools.ide.site import Where, around, innermost_brackets, scope_at, site_at, spot_at
+from aidl_lang.tools.ide.site import around, innermost_brackets, scope_at, site_at, spot_at
 from aidl_lang.tools.ide.workspace import View
 from aidl_lang.tools.reference import facts, forms
 from aidl_lang.tools.reference.collect import Doc, Entry, doc, reference
@@ -22,6 +23,8 @@ from aidl_lang.tools.reference.signatures import split_items, written
 from aidl_lang.typecheck import Program
 
 MOST_FORMS = 6
+_LONGEST = 100
+"""Most characters of an expression in a head."""
 _FEWEST_WORDS = 2
 """Fewest blanks of a useful sentence: a list of names describes none of them."""
 _SENTENCE_END = re.compile(r"(?<=[.!?])\s+(?=[A-Z`(])|\n\n+")
@@ -70,7 +73,7 @@ def head(node: ast.Node) -> str:
     """Returns the first line of a definition, as `solid bolt(size = 4)`."""
     match node:
         case ast.FunctionDefinition():
-            return f"fn {written(node)} = {_short(node.value.span.one_line)}"
+            return f"fn {written(node)} = {shortened(node.value.span.one_line, _LONGEST)}"
         case ast.ShapeDefinition():
             return f"shape {written(node)}"
         case ast.ConstraintDefinition():
@@ -82,13 +85,9 @@ def head(node: ast.Node) -> str:
             return f"{node.kind_word.text} {written(node)}"
         case ast.For() | ast.ForArguments():
             names = ", ".join(v.text for v in node.variables)
-            return f"for {names} in {_short(node.iterable.span.one_line)}"
+            return f"for {names} in {shortened(node.iterable.span.one_line, _LONGEST)}"
         case _:
-            return _short(node.span.one_line)
-
-
-def _short(text: str, most: int = 100) -> str:
-    return text if len(text) <= most else text[: most - 1] + "…"
+            return shortened(node.span.one_line, _LONGEST)
 
 
 def of_callable(name: str, signatures: Sequence[Signature]) -> str:
@@ -303,7 +302,7 @@ class SignatureHelp:
 def signature_help(view: View, offset: int) -> SignatureHelp | None:
     """Returns help for the innermost call whose parentheses, closed or not, contain an offset."""
     spot = spot_at(view, offset)
-    if spot.where is Where.COMMENT:
+    if spot.where == "comment":
         return None
     offset = spot.offset  # within the text
     brackets = innermost_brackets(standing_before(view.source, offset))
@@ -311,7 +310,7 @@ def signature_help(view: View, offset: int) -> SignatureHelp | None:
     if opening is None:
         return None
     found = _argument_at(view, opening, offset)
-    if found is None and spot.where is Where.CODE:
+    if found is None and spot.where == "code":
         site = site_at(view, spot)
         view = site.view or view
         found = _argument_at(view, opening, spot.start + 1)

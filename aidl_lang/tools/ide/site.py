@@ -5,9 +5,9 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from dataclasses import replace
-from enum import Enum
 from functools import cached_property
 from itertools import takewhile
+from typing import Literal
 
 from aidl_lang.checking.symbols import SymbolScope
 from aidl_lang.common.records import record
@@ -31,7 +31,6 @@ def around(module: ast.Module, offset: int) -> list[ast.Node]:
 
 
 def scope_at(view: View, offset: int) -> SymbolScope:
-    """Returns the innermost scope around an offset."""
     scopes = view.resolution.scopes
     path = around(view.module, offset)
     return next(scopes[node] for node in reversed(path) if node in scopes and _opens_here(node, offset))
@@ -68,13 +67,6 @@ _CLOSERS = {"(": ")", "CALL": ")", "[": "]"}
 _DIGITS = re.compile(r"(\d+(\.\d+)?|\.\d+)([eE][+-]?\d+)?")
 
 
-class Where(Enum):
-    CODE = "code"
-    COMMENT = "comment"
-    STRING = "string"
-    NUMBER = "number"
-
-
 @record()
 class Spot:
     """The text that an offset lies in or at the end of: a comment, string or number, or code.
@@ -85,7 +77,7 @@ class Spot:
     before      the last token that ends before `start`
     """
 
-    where: Where
+    where: Literal["comment", "string", "number", "code"]
     offset: int
     start: int
     end: int
@@ -98,18 +90,18 @@ def spot_at(view: View, offset: int) -> Spot:
     offset = max(0, min(offset, len(text)))
     tokens = view.tokens
     if _in_comment(tokens, text, offset):
-        return Spot(Where.COMMENT, offset, offset, offset, None)
+        return Spot("comment", offset, offset, offset, None)
     before: Token | None = None
     for token in tokens.tokens:
         if token.start >= offset or token.kind == END:
             break
         name_end = _word_end(token)
         if offset <= name_end:
-            return Spot(Where.CODE, offset, token.start, name_end, before)
+            return Spot("code", offset, token.start, name_end, before)
         if (found := _literal(token, before, text, offset)) is not None:
             return found
         before = token
-    return Spot(Where.CODE, offset, offset, offset, before)
+    return Spot("code", offset, offset, offset, before)
 
 
 def _in_comment(tokens: Tokens, text: str, offset: int) -> bool:
@@ -132,7 +124,7 @@ def _literal(token: Token, before: Token | None, text: str, offset: int) -> Spot
     is_string = token.text[:1] in ("'", '"')
     if is_string and (offset < token.end or (token.kind == UNKNOWN and offset == token.end)):
         end = token.end - (token.kind == "STRING")
-        return Spot(Where.STRING, offset, token.start + 1, max(end, token.start + 1), before, token)
+        return Spot("string", offset, token.start + 1, max(end, token.start + 1), before, token)
     if token.kind == "NUMBER" and offset <= token.end:
         return _number(token, before, offset)
     unit = before is not None and before.kind == "NUMBER" and before.end == token.start
@@ -146,7 +138,7 @@ def _number(token: Token, before: Token | None, offset: int) -> Spot:
     digits = _DIGITS.match(token.text)
     assert digits is not None
     start = token.start + digits.end()
-    return Spot(Where.NUMBER, offset, start, token.end, before, token)
+    return Spot("number", offset, start, token.end, before, token)
 
 
 @record(eq=False)
@@ -173,12 +165,10 @@ class EditSite:
 
     @property
     def following(self) -> str:
-        """The text after the word."""
         return self.original.source.text[self.spot.end :]
 
     @cached_property
     def scope(self) -> SymbolScope | None:
-        """The names visible at the place."""
         return None if self.view is None else scope_at(self.view, self.spot.start + 1)
 
     @cached_property

@@ -67,10 +67,6 @@ class Positions:
         self._wide = found
         self._more = [0, *accumulate(_units(text[at], unit) - 1 for at in found)]
 
-    @property
-    def lines(self) -> int:
-        return len(self._starts)
-
     def position(self, offset: int) -> Position:
         """Returns the position of an offset; beyond the text its end, in a line break that's start."""
         offset = max(0, min(offset, self._ends[-1]))
@@ -82,17 +78,13 @@ class Positions:
         """Returns the offset of a position; beyond a line the end of it, within a character the start."""
         if line < 0:
             return 0
-        if line >= self.lines:
+        if line >= len(self._starts):
             return self._ends[-1]
         start, end = self._starts[line], self._ends[line]
         wanted = self._units(start) + max(0, character)
         if wanted >= self._units(end):
             return end
         return start + bisect_right(range(start, end), wanted, key=self._units) - 1
-
-    def length(self, start: int, end: int) -> int:
-        """Returns the units from one offset to another, line breaks included."""
-        return self._units(end) - self._units(start)
 
     def _units(self, offset: int) -> int:
         return offset + self._more[bisect_left(self._wide, offset)]
@@ -125,7 +117,6 @@ def between(source: SourceFile, text: str) -> list[Edit]:
 
 
 def line_start(text: str, offset: int) -> int:
-    """Returns the beginning of the line of an offset."""
     return text.rfind("\n", 0, offset) + 1
 
 
@@ -157,7 +148,6 @@ def format_document(view: View) -> list[Edit]:
 
 
 def format_range(view: View, wanted: Span) -> list[Edit]:
-    """Returns the formatting edits for the lines of a range."""
     text = view.source.text
     start = line_start(text, wanted.start)
     end = text.find("\n", wanted.end)
@@ -240,7 +230,6 @@ class View:
 
     @property
     def knobs(self) -> tuple[Knob, ...]:
-        """The params as the outcome has them."""
         return self.outcome.knobs if self.outcome is not None else ()
 
     @property
@@ -276,7 +265,6 @@ class View:
 
     @cached_property
     def tokens(self) -> Tokens:
-        """All tokens and comments of the text."""
         return tokenize(self.source)
 
     def span(self, start: int, end: int) -> Span:

@@ -145,7 +145,8 @@ def _version(old: ast.Statement, new: ast.Statement) -> str:
     blocks = _block(old), _block(new)
     if blocks[0] is None or blocks[1] is None:
         return new.span.text
-    heads = [_head(node, block) for node, block in zip((old, new), blocks, strict=True) if block]
+    pairs = zip((old, new), blocks, strict=True)
+    heads = [n.span.source.text[n.span.start : block.span.start] for n, block in pairs if block]
     head = heads[0] if _spaceless(heads[0]) == _spaceless(heads[1]) else heads[1]
     return f"{head}{{{_merged(_of_block(blocks[0]), _of_block(blocks[1]))}}}"
 
@@ -154,10 +155,6 @@ def _block(node: ast.Statement) -> ast.Block | None:
     """Returns the one block of a statement that is a head and a block."""
     blocks = [child for child in ast.children(node) if isinstance(child, ast.Block)]
     return blocks[0] if len(blocks) == 1 and blocks[0].span.text.startswith("{") else None
-
-
-def _head(node: ast.Statement, block: ast.Block) -> str:
-    return node.span.source.text[node.span.start : block.span.start]
 
 
 def _spaceless(text: str) -> str:
@@ -335,7 +332,7 @@ class AidlConversation:
 
 def _what(loss: Loss) -> tuple[str, ...]:
     """Returns a key that is the same for a loss in all attempts."""
-    return loss.kind, loss.path, loss.text
+    return loss.kind, *loss.item.home, loss.item.text
 
 
 def _is_partial(source: SourceFile, compiled: Compiled) -> bool:

@@ -203,12 +203,12 @@ def generate(
             step = len(attempts) + 1
             reply = provider.reply(messages, settings.sampling, partial(hear, step))
             messages.append(Message("assistant", reply.text.strip() or "(nothing)"))
-            found = find_program(reply.text, language.fences, language.reads)
+            program, is_open = find_program(reply.text, language.fences, language.reads)
             verdict = None
-            if found.program is None or (reply.finish is Finish.CUT and found.is_open):
-                program, answer = None, _without_program(language.fences[0], reply, found.is_open)
+            if program is None or (reply.finish is Finish.CUT and is_open):
+                program, answer = None, _without_program(language.fences[0], reply, is_open)
             else:
-                program, verdict = found.program, conversation.judge(found.program)
+                verdict = conversation.judge(program)
                 answer = verdict.feedback
             number += not (verdict is not None and verdict.is_partial)
             is_last = number >= settings.attempts or step >= 2 * settings.attempts

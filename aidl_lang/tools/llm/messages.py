@@ -230,16 +230,9 @@ _THOUGHT = re.compile(r"<(think|thinking|reasoning)>.*?(</\1>|\Z)", re.S)
 _FENCE = re.compile(r"^[ \t]*(`{3,}|~{3,})[ \t]*([^\s`]*)[^\n`]*$", re.M)
 
 
-@record()
-class FoundProgram:
-    """The program in a reply, None if there is none, and whether the reply ends inside a block."""
-
-    program: str | None
-    is_open: bool
-
-
-def find_program(text: str, fences: Sequence[str], reads: Callable[[str], bool]) -> FoundProgram:
-    """Returns the last fenced block: of those with one of the names `fences` if there is one, else of all.
+def find_program(text: str, fences: Sequence[str], reads: Callable[[str], bool]) -> tuple[str | None, bool]:
+    """Returns the last fenced block: of those with one of the names `fences` if there is one, else of all;
+    None if there is none. With it comes whether the reply ends inside a block.
 
     A reply without a fence may be a program itself, which `reads` tells. Thoughts between tags are no part of
     the reply, and a block that is not closed holds no whole program.
@@ -256,9 +249,9 @@ def find_program(text: str, fences: Sequence[str], reads: Callable[[str], bool])
     if not blocks:
         bare = spoken.strip()
         is_program = opened is None and bool(bare) and reads(bare)
-        return FoundProgram(f"{bare}\n" if is_program else None, opened is not None)
+        return f"{bare}\n" if is_program else None, opened is not None
     named = [program for name, program in blocks if name in fences]
-    return FoundProgram(named[-1] if named else blocks[-1][1], opened is not None)
+    return named[-1] if named else blocks[-1][1], opened is not None
 
 
 # --- The interface between a conversation and the language of its programs.

@@ -7,8 +7,6 @@ import os
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import field
-from functools import partial
-from operator import eq
 from pathlib import Path
 from typing import Any, TypeAlias, TypeVar, get_args
 from urllib.parse import quote, unquote, urlsplit
@@ -249,11 +247,8 @@ class Converter:
         uri = self.uri(span.source)
         return None if uri is None else types.Location(uri, self.range(span))
 
-    def edit(self, edit: Edit) -> types.TextEdit:
-        return types.TextEdit(self.range(edit.span), edit.replacement)
-
     def edits(self, edits: Iterable[Edit]) -> list[types.TextEdit]:
-        return [self.edit(edit) for edit in edits]
+        return [types.TextEdit(self.range(edit.span), edit.replacement) for edit in edits]
 
     def change(self, edits: Iterable[Edit]) -> types.WorkspaceEdit:
         """Returns edits of the program, without those that are in no file."""
@@ -343,7 +338,6 @@ class Publisher:
                 self._tell(uri)
 
     def forget(self, document: Document) -> None:
-        """Removes the diagnostics of a program."""
         self._serials.pop(document, None)
         for uri in self._told.pop(document, {}):
             self._tell(uri)
@@ -470,42 +464,25 @@ def read(params: object, kind: type[T]) -> T:
         raise JsonRpcInvalidParams("; ".join(cattrs.transform_error(error))) from None
 
 
-_IS: dict[type, Callable[[Any], bool]] = {
-    str: lambda value: isinstance(value, str) and len(value) <= _LONGEST,
-    bool: lambda value: isinstance(value, bool),
-    int: lambda value: type(value) is int,
-    float: lambda value: type(value) in (int, float) and abs(value) <= 1e300,
-}
-"""Checks that plain data has a type without conversion: the library itself takes `"3"` for a number."""
-
-
 def _plain(value: Any, kind: Any) -> Any:
-    if not _IS[kind](value):
-        raise ValueError
-    return kind(value)
-
-
-def _any(value: Any, _: object) -> Any:
-    return _plain(value, type(value) if isinstance(value, str | bool) else float)
-
-
-def _mapping(value: Any, kind: Any) -> Any:
-    if not isinstance(value, Mapping):
-        raise ValueError
-    one = _any if kind == Values else _plain
-    return {_plain(name, str): one(each, str) for name, each in value.items()}
-
-
-def _tuple(value: Any, kind: Any) -> Any:
-    first, *_ = kinds = get_args(kind)
-    if not isinstance(value, list) or (... not in kinds and len(value) != len(kinds)):
-        raise ValueError
-    return tuple(_plain(each, first) for each in value)
+    """Returns plain data that is of a kind as it is: the library itself takes `"3"` for a number."""
+    kinds, is_number = get_args(kind), type(value) in (int, float)
+    if kind == Value:
+        return _plain(value, float if is_number else type(value))
+    if kind in (Values, Words) and isinstance(value, Mapping):
+        return {_plain(name, str): _plain(each, kinds[1]) for name, each in value.items()}
+    if kind in (Texts, Point) and isinstance(value, list) and (... in kinds or len(value) == len(kinds)):
+        return tuple(_plain(each, kinds[0]) for each in value)
+    if (
+        (kind is str and isinstance(value, str) and len(value) <= _LONGEST)
+        or (kind is float and is_number and abs(value) <= 1e300)
+        or (kind in (bool, int) and type(value) is kind)
+    ):
+        return kind(value)
+    raise ValueError
 
 
 _converter = cattrs.Converter()
-for _kind in _IS:
+for _kind in (str, bool, int, float):
     _converter.register_structure_hook(_kind, _plain)
-_converter.register_structure_hook_func(partial(eq, Value), _any)
-_converter.register_structure_hook_func((Values, Words).__contains__, _mapping)
-_converter.register_structure_hook_func((Texts, Point).__contains__, _tuple)
+_converter.register_structure_hook_func((Value, Values, Words, Texts, Point).__contains__, _plain)

@@ -157,10 +157,8 @@ def register_appearance(server: Server) -> None:
         def line(number: int) -> int:
             return convert.position(source, source.line_starts[number - 1]).line
 
-        return [
-            types.FoldingRange(line(fold.start), line(fold.end), kind=_FOLD.get(fold.kind))
-            for fold in outline.folds(asked.view)
-        ]
+        found = outline.folds(asked.view)
+        return [types.FoldingRange(line(a), line(b), kind=_FOLD.get(kind)) for a, b, kind in found]
 
     @server.answers_to(types.TEXT_DOCUMENT_SELECTION_RANGE)
     def find_selections(asked: Asked, params: types.SelectionRangeParams) -> list[types.SelectionRange]:
@@ -183,12 +181,12 @@ def register_appearance(server: Server) -> None:
 
     @server.answers_to(types.TEXT_DOCUMENT_DOCUMENT_COLOR)
     def find_colors(asked: Asked, params: types.DocumentColorParams) -> list[types.ColorInformation]:
-        made = []
-        for color in outline.colors(asked.view):
-            red, green, blue = (part / 255 for part in color.rgb)
-            shown = types.Color(red, green, blue, alpha=1.0)
-            made.append(types.ColorInformation(asked.convert.range(color.span), shown))
-        return made
+        return [
+            types.ColorInformation(
+                asked.convert.range(span), types.Color(red / 255, green / 255, blue / 255, alpha=1.0)
+            )
+            for span, (red, green, blue) in outline.colors(asked.view)
+        ]
 
     @server.answers_to(types.TEXT_DOCUMENT_COLOR_PRESENTATION)
     def find_spellings(asked: Asked, params: types.ColorPresentationParams) -> list[types.ColorPresentation]:

@@ -13,7 +13,6 @@ from functools import partial
 from itertools import count
 from typing import Any, TypeAlias, TypeVar
 
-from lsprotocol import types
 from pygls.exceptions import (
     JsonRpcException,
     JsonRpcInvalidParams,
@@ -33,19 +32,7 @@ from aidl_lang.tools.ide.preview import layered, preview, tried
 from aidl_lang.tools.ide.preview.elements import Preview, Writer, set_knob, worked_out
 from aidl_lang.tools.ide.references import CannotError
 from aidl_lang.tools.ide.workspace import View
-from aidl_lang.tools.lsp.documents import (
-    ApplyFix,
-    Document,
-    Drag,
-    Export,
-    OfDocument,
-    OfVersion,
-    SetKnob,
-    Show,
-    Try,
-    VersionedView,
-    read,
-)
+from aidl_lang.tools.lsp import documents
 from aidl_lang.tools.lsp.running import FAILED
 from aidl_lang.tools.lsp.server import Asked, Server
 
@@ -53,17 +40,14 @@ from aidl_lang.tools.lsp.server import Asked, Server
 #
 # An option of the command becomes one of the dialog by a line of `OPTIONS`.
 
-Change = Callable[[Options, str], Options]
-"""Returns the options with what was given for one of them. Raises ValueError."""
-
 
 @record()
 class Option:
-    """An option of the dialog.
+    """An option of the dialog, under its name among those of an export.
 
     label    what stands before its field
     hint     an example, shown in the empty field
-    change   puts what was given, which is not empty, into the options
+    read     returns the value for what was given, which is not empty. Raises ValueError
     choices  what may be given; empty for what is typed
     of       what formats that have it do, a field of theirs
     """
@@ -71,7 +55,7 @@ class Option:
     name: str
     label: str
     hint: str
-    change: Change
+    read: Callable[[str], object]
     choices: tuple[str, ...] = ()
     of: str = "cuts"
 
@@ -80,20 +64,16 @@ _NESTING = 5.0
 """Seconds for packing parts by their outlines."""
 
 
-def _nested(options: Options, given: str) -> Options:
-    return replace(options, nest=_NESTING if given == "outlines" else None)
-
+_PACKED = {"boxes": None, "outlines": _NESTING}
 
 OPTIONS = (
-    Option("sheet", "Sheet", "600x400, a3", lambda o, given: replace(o, sheet=units.size(given))),
-    Option("spacing", "Spacing", "3mm", lambda o, given: replace(o, spacing=units.length(given))),
-    Option("nest", "Packed by", "boxes", _nested, ("boxes", "outlines")),
-    Option("kerf", "Kerf", "0.15mm", lambda o, given: replace(o, kerf=units.length(given))),
-    Option(
-        "profile", "Profile", "plain", lambda o, given: replace(o, profile=PROFILES[given]), tuple(PROFILES)
-    ),
-    Option("theme", "Theme", "colour", lambda o, given: replace(o, theme=given), THEMES, "tiles"),
-    Option("tile", "Pages", "a4", lambda o, given: replace(o, tile=units.size(given)), of="tiles"),
+    Option("sheet", "Sheet", "600x400, a3", units.size),
+    Option("spacing", "Spacing", "3mm", units.length),
+    Option("nest", "Packed by", "boxes", _PACKED.__getitem__, tuple(_PACKED)),
+    Option("kerf", "Kerf", "0.15mm", units.length),
+    Option("profile", "Profile", "plain", PROFILES.__getitem__, tuple(PROFILES)),
+    Option("theme", "Theme", "colour", str, THEMES, "tiles"),
+    Option("tile", "Pages", "a4", units.size, of="tiles"),
 )
 
 
@@ -117,16 +97,16 @@ def offered() -> dict[str, Any]:
 def changed(options: Options, given: Mapping[str, str]) -> Options:
     """Returns options with what was given in the dialog. Raises ValueError."""
     known = {option.name: option for option in OPTIONS}
+    read = {}
     for name, text in given.items():
         if name not in known:
             raise ValueError(f"there is no option `{name}`")
         option, text = known[name], text.strip()
-        if not text:
-            continue
-        if option.choices and text not in option.choices:
+        if text and option.choices and text not in option.choices:
             raise ValueError(f"{option.label.lower()} is one of {', '.join(option.choices)}, not `{text}`")
-        options = option.change(options, text)
-    return options
+        if text:
+            read[name] = option.read(text)
+    return replace(options, **read)  # type: ignore[arg-type]  # each is of the kind that its name has
 
 
 def packed(stem: str, suffix: str, made: Exported) -> tuple[str, bytes]:
@@ -164,7 +144,7 @@ class _Shown:
 
     viewers: dict[str, Look] = field(default_factory=dict)
     handles: tuple[Handle, ...] = ()
-    made: dict[Look, tuple[VersionedView, Preview]] = field(default_factory=dict)
+    made: dict[Look, tuple[documents.VersionedView, Preview]] = field(default_factory=dict)
 
     def looks(self) -> dict[Look, list[str]]:
         """Returns the viewers grouped by the picture they see."""
@@ -179,28 +159,28 @@ class Pictures:
 
     def __init__(self, server: Server) -> None:
         self.server = server
-        self._shown: dict[Document, _Shown] = {}
+        self._shown: dict[documents.Document, _Shown] = {}
         server.on_solved.append(self._solved)
         server.on_closed.append(lambda document: self._shown.pop(document, None))
 
-    def show(self, document: Document, wanted: Show) -> None:
+    def show(self, document: documents.Document, wanted: documents.Show) -> None:
         shown = self._shown.setdefault(document, _Shown())
         shown.viewers[wanted.viewer] = frozenset(wanted.show)
 
-    def close(self, document: Document, viewer: str) -> None:
+    def close(self, document: documents.Document, viewer: str) -> None:
         """Stops telling a viewer of a document."""
         shown = self._shown.get(document)
         if shown is not None and shown.viewers.pop(viewer, None) is not None and not shown.viewers:
             self._shown.pop(document)
 
-    def tried(self, asked: Asked, document: Document, view: View, viewer: str) -> Json:
+    def tried(self, asked: Asked, document: documents.Document, view: View, viewer: str) -> Json:
         """Returns the message for a view of another text. To be called in the solving thread."""
         shown = self._shown.get(document, _Shown())
         layers = shown.viewers.get(viewer, _PLAIN)
         made = preview(view, layers, tried=True, known=shown.handles)
         return _written(asked, made, view)
 
-    async def picture(self, document: Document, viewer: str, key: Hashable) -> Json | None:
+    async def picture(self, document: documents.Document, viewer: str, key: Hashable) -> Json | None:
         """Returns the message for the newest run; None without one. Handles follow."""
         known = document.ran
         if known is None or not document.is_open:
@@ -218,7 +198,7 @@ class Pictures:
             self.server.in_background(self._complete(document, asked, made))
         return _written(asked, made, known.view)
 
-    def _solved(self, document: Document) -> None:
+    def _solved(self, document: documents.Document) -> None:
         if document.ran is None:
             return
         self._tell_status(document)
@@ -226,7 +206,7 @@ class Pictures:
         for look, viewers in shown.looks().items():
             self.server.in_background(self._send(document, look, viewers))
 
-    async def _send(self, document: Document, look: Look, viewers: Sequence[str]) -> None:
+    async def _send(self, document: documents.Document, look: Look, viewers: Sequence[str]) -> None:
         if (message := await self.picture(document, viewers[0], (document, look))) is not None:
             self._tell(viewers, message)
 
@@ -234,7 +214,7 @@ class Pictures:
         for viewer in viewers:
             self.server.protocol.tell("aidl/previewChanged", {"viewer": viewer, **message})
 
-    async def _complete(self, document: Document, asked: Asked, made: Preview) -> None:
+    async def _complete(self, document: documents.Document, asked: Asked, made: Preview) -> None:
         """Finds the handles, and sends the picture again if they are new."""
         await asyncio.sleep(_PAUSE)
         if document.ran is not asked.known or document not in self._shown:
@@ -251,7 +231,7 @@ class Pictures:
                 self._tell(viewers, _written(asked, replace(before, handles=found), view))
 
     async def _work(
-        self, key: Hashable, document: Document, function: Callable[[], T], *, first: bool = True
+        self, key: Hashable, document: documents.Document, function: Callable[[], T], *, first: bool = True
     ) -> T | None:
         """Returns a result from the solving thread; None if the document changed, or a newer asked."""
         serial = document.serial
@@ -264,7 +244,7 @@ class Pictures:
         except Cancelled:
             return None
 
-    def _tell_status(self, document: Document) -> None:
+    def _tell_status(self, document: documents.Document) -> None:
         known = document.ran
         outcome = known.view.outcome if known is not None else None
         if known is None or outcome is None:
@@ -291,19 +271,19 @@ _LONGEST_WAIT = 30.0
 
 def register_preview(server: Server) -> None:
     requests = _Requests(server)
-    _answer(server, "aidl/preview", Show, requests.preview)
-    _answer(server, "aidl/previewClose", OfDocument, requests.close)
-    _answer(server, "aidl/try", Try, requests.attempt)
-    _answer(server, "aidl/setKnob", SetKnob, requests.set_knob)
-    _answer(server, "aidl/drag", Drag, requests.drag)
-    _answer(server, "aidl/fix", ApplyFix, requests.fix)
-    _answer(server, "aidl/export", Export, requests.export)
-    _answer(server, "aidl/exports", OfDocument, requests.exports)
+    _answer(server, "aidl/preview", documents.Show, requests.preview)
+    _answer(server, "aidl/previewClose", documents.OfDocument, requests.close)
+    _answer(server, "aidl/try", documents.Try, requests.attempt)
+    _answer(server, "aidl/setKnob", documents.SetKnob, requests.set_knob)
+    _answer(server, "aidl/drag", documents.Drag, requests.drag)
+    _answer(server, "aidl/fix", documents.ApplyFix, requests.fix)
+    _answer(server, "aidl/export", documents.Export, requests.export)
+    _answer(server, "aidl/exports", documents.OfDocument, requests.exports)
 
 
 def _answer(server: Server, method: str, kind: type[T], answer: Callable[[T], Awaitable[Any]]) -> None:
     async def handler(params: Any) -> Any:  # pygls takes no parameter that is typed as `object`
-        return await answer(read(params, kind))
+        return await answer(documents.read(params, kind))
 
     server.feature(method)(handler)
 
@@ -316,7 +296,7 @@ class _Requests:
         self._asked: Counter[tuple[str, str]] = Counter()
         """How often a viewer of a document asked for what outdates its tries."""
 
-    async def preview(self, given: Show) -> Json | None:
+    async def preview(self, given: documents.Show) -> Json | None:
         """Shows a document from now on."""
         document = self.server.document(given.uri)
         self._asked[given.uri, given.viewer] += 1
@@ -325,13 +305,13 @@ class _Requests:
         await document.until_solved(document.serial, _LONGEST_WAIT)
         return await self.pictures.picture(document, given.viewer, next(self._numbers))
 
-    async def close(self, given: OfDocument) -> None:
+    async def close(self, given: documents.OfDocument) -> None:
         self._asked.pop((given.uri, given.viewer), None)
         document = self.server.documents.get(given.uri)
         if document is not None:
             self.pictures.close(document, given.viewer)
 
-    async def attempt(self, given: Try) -> Json:
+    async def attempt(self, given: documents.Try) -> Json:
         """Returns the picture with other values of params, or with a point dragged; writes nothing."""
         viewer = given.uri, given.viewer
         asked_before = self._asked[viewer]
@@ -354,14 +334,14 @@ class _Requests:
         except (AidlError, CannotError) as reason:
             raise JsonRpcException(_why(reason), FAILED) from None
 
-    async def set_knob(self, given: SetKnob) -> Json:
+    async def set_knob(self, given: documents.SetKnob) -> Json:
         edits = partial(set_knob, path=given.path, value=given.value)
         return await self._edit(given, edits, f"Set {given.path}")
 
-    async def drag(self, given: Drag) -> Json:
+    async def drag(self, given: documents.Drag) -> Json:
         return await self._edit(given, lambda view: drag(view, given.id, given.to).edits, "Drag")
 
-    async def fix(self, given: ApplyFix) -> Json:
+    async def fix(self, given: documents.ApplyFix) -> Json:
         asked, _ = await self._solved(given)
         found = asked.view.diagnostics
         fix = found[given.problem].fix if 0 <= given.problem < len(found) and given.fix == 0 else None
@@ -369,7 +349,7 @@ class _Requests:
             return _not_applied("there is no such fix")
         return await self._apply(asked, fix.edits, fix.title)
 
-    async def export(self, given: Export) -> Json:
+    async def export(self, given: documents.Export) -> Json:
         suffix = f".{given.format}"
         if suffix not in FORMATS:
             raise JsonRpcInvalidParams(f"there is no format `{suffix}`")
@@ -389,17 +369,19 @@ class _Requests:
         notes = [_worded(note) for note in made.notes]
         return {"name": name, "data": base64.b64encode(data).decode("ascii"), "notes": notes}
 
-    async def exports(self, given: OfDocument) -> Json:
+    async def exports(self, given: documents.OfDocument) -> Json:
         return offered()
 
-    async def _solved(self, given: OfVersion | ApplyFix) -> tuple[Asked, Document]:
+    async def _solved(
+        self, given: documents.OfVersion | documents.ApplyFix
+    ) -> tuple[Asked, documents.Document]:
         document, known = await self.server.solved_text(given.uri, _LONGEST_WAIT, given.version)
         return self.server.asked_now(document, known), document
 
     async def _work(
         self,
         key: tuple[str, ...],
-        document: Document,
+        document: documents.Document,
         asked: Asked,
         function: Callable[[], T],
         is_outdated: Callable[[], bool] = lambda: False,
@@ -414,7 +396,9 @@ class _Requests:
         except Cancelled:
             raise JsonRpcRequestCancelled("there is something newer") from None
 
-    async def _edit(self, given: OfVersion, edits: Callable[[View], Sequence[Edit]], label: str) -> Json:
+    async def _edit(
+        self, given: documents.OfVersion, edits: Callable[[View], Sequence[Edit]], label: str
+    ) -> Json:
         """Makes one edit of a document after the other: each on the text that the one before made."""
         self._asked[given.uri, given.viewer] += 1
         async with self.server.document(given.uri).editing:
@@ -426,11 +410,8 @@ class _Requests:
             return await self._apply(asked, made, label)
 
     async def _apply(self, asked: Asked, edits: Sequence[Edit], label: str) -> Json:
-        params = types.ApplyWorkspaceEditParams(asked.convert.change(edits), label)
-        answer = await self.server.workspace_apply_edit_async(params)
-        if answer.applied:
-            return {"applied": True}
-        return _not_applied(answer.failure_reason or "the editor did not change the text")
+        reason = await self.server.apply(asked, edits, label)
+        return _not_applied(reason) if reason else {"applied": True}
 
 
 def _worded(diagnostic: Diagnostic) -> str:

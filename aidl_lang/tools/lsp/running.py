@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import asyncio
 import gc
-import threading
 import time
 from collections.abc import Callable, Hashable
 from concurrent.futures import Future, ThreadPoolExecutor
@@ -12,127 +11,116 @@ from contextlib import suppress
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import Any, Generic, Protocol, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from pygls.exceptions import JsonRpcException
 
 from aidl_lang.common import resources
-from aidl_lang.common.records import record
 from aidl_lang.common.running import Cancelled, cancelled_when, checkpoint
 from aidl_lang.common.world import MemoryWorld, is_data
-from aidl_lang.pipeline import Settings
 from aidl_lang.syntax import ast
 from aidl_lang.tools.ide.completion import complete
 from aidl_lang.tools.ide.hover import hover
 from aidl_lang.tools.ide.preview import preview
 from aidl_lang.tools.ide.references import CannotError
-from aidl_lang.tools.ide.workspace import SETTINGS, View, Workspace, look, run
-from aidl_lang.tools.lsp.documents import Document, Documents, VersionedView
+from aidl_lang.tools.ide.workspace import SETTINGS, View, look, run
+from aidl_lang.tools.lsp.documents import Document, VersionedView
+
+if TYPE_CHECKING:
+    from aidl_lang.tools.lsp.server import Server
 
 # --- Work off the message thread: single threads with queues.
 
 T = TypeVar("T")
 
 
-@record(frozen=False, eq=False)
-class Job(Generic[T]):
-    """A piece of work: `work` runs in the lane's thread, `done` then on the loop with the result."""
+FAILED = -32803
+"""The protocol's code for a request that was understood and cannot be done."""
 
-    key: Hashable
-    work: Callable[[], T]
-    done: Callable[[Future[T]], None]
-    dropped: Callable[[], None] = lambda: None
-    """Called instead of `done` if newer work of the same key replaces it before it has begun."""
+
+class Dropped(Cancelled):
+    """Raised in place of a result where newer work of the same key came before this had begun."""
 
 
 class Lane:
     """Does one piece of work at a time, of those under one key the newest; for use in the loop's thread."""
 
-    def __init__(self, name: str, loop: asyncio.AbstractEventLoop, finished: Callable[[], None]) -> None:
+    def __init__(self, name: str, finished: Callable[[], None] = lambda: None) -> None:
         self._executor = ThreadPoolExecutor(max_workers=1, thread_name_prefix=name)
-        self._loop, self._finished = loop, finished
-        self._waiting: dict[Hashable, Job[Any]] = {}
-        self.running: Job[Any] | None = None
+        self._finished = finished
+        self._waiting: dict[Hashable, tuple[Callable[[], Any], asyncio.Future[Any]]] = {}
+        self.running: asyncio.Future[Any] | None = None
         self._is_closed = False
 
     def waits(self, key: Hashable) -> bool:
         return key in self._waiting
 
-    def put(self, job: Job[Any], first: bool = False) -> None:
-        """Queues work, last or as the next."""
-        self.drop(job.key)
+    def put(self, key: Hashable, work: Callable[[], T], first: bool = False) -> asyncio.Future[T]:
+        """Queues work, last or as the next. Returns what will have its result."""
+        self.drop(key)
+        result: asyncio.Future[T] = asyncio.get_running_loop().create_future()
+        result.add_done_callback(lambda done: done.cancelled() or done.exception())  # which is then no news
         if self._is_closed:
-            job.dropped()
-            return
-        self._waiting = {job.key: job, **self._waiting} if first else {**self._waiting, job.key: job}
-        self._start()
+            result.set_exception(Dropped())
+        else:
+            put = {key: (work, result)}
+            self._waiting = put | self._waiting if first else self._waiting | put
+            self._start()
+        return result
+
+    async def ask(self, answer: Callable[[], T]) -> T:
+        """Returns an answer, found in its turn and no longer than somebody waits for it; for a CannotError
+        raises an error of the protocol.
+        """
+
+        def is_unwanted() -> bool:
+            return self._is_closed or (self.running is not None and self.running.cancelled())
+
+        def work() -> T:
+            with cancelled_when(is_unwanted):
+                return answer()
+
+        try:
+            return await self.put(object(), work)
+        except CannotError as reason:
+            raise JsonRpcException(str(reason), FAILED) from None
+        except Dropped:
+            raise asyncio.CancelledError from None
 
     def drop(self, key: Hashable) -> None:
         """Drops the work waiting under a key; running work goes on."""
-        if (older := self._waiting.pop(key, None)) is not None:
-            older.dropped()
+        _, result = self._waiting.pop(key, (None, None))
+        if result is not None and not result.done():
+            result.set_exception(Dropped())
 
     def close(self) -> None:
-        """Drops waiting work and begins nothing more."""
+        """Drops waiting work, cancels the present answer, and begins nothing more."""
         self._is_closed = True
         for key in list(self._waiting):
             self.drop(key)
         self._executor.shutdown(wait=False, cancel_futures=True)
 
     def _start(self) -> None:
-        if self.running is None and self._waiting:
-            job = self._waiting.pop(next(iter(self._waiting)))
-            self.running = job
-            self._executor.submit(job.work).add_done_callback(partial(self._hand_over, job))
+        while self.running is None and self._waiting:
+            work, result = self._waiting.pop(next(iter(self._waiting)))
+            if not result.cancelled():
+                self.running = result
+                self._executor.submit(work).add_done_callback(partial(self._hand_over, result))
 
-    def _hand_over(self, job: Job[Any], future: Future[Any]) -> None:
+    def _hand_over(self, result: asyncio.Future[Any], future: Future[Any]) -> None:
         """Passes a result to the loop, from the lane's thread or whichever cancels."""
         with suppress(RuntimeError):  # the loop has ended: nobody waits for this any more
-            self._loop.call_soon_threadsafe(self._finish, job, future)
+            result.get_loop().call_soon_threadsafe(self._finish, result, future)
 
-    def _finish(self, job: Job[Any], future: Future[Any]) -> None:
+    def _finish(self, result: asyncio.Future[Any], future: Future[Any]) -> None:
         self.running = None
-        try:
-            if not future.cancelled():
-                job.done(future)
-        finally:
-            self._start()
-            self._finished()
-
-
-FAILED = -32803
-"""The protocol's code for a request that was understood and cannot be done."""
-
-
-class Answers:
-    """Answers questions one after the other, off the loop. Work on a cancelled question stops."""
-
-    def __init__(self, name: str) -> None:
-        self._executor = ThreadPoolExecutor(max_workers=1, thread_name_prefix=name)
-        self._is_closing = False
-
-    async def ask(self, answer: Callable[[], T]) -> T:
-        """Returns the answer. Raises what `answer` raises; for a CannotError an error of the protocol."""
-        unwanted = threading.Event()
-
-        def work() -> T:
-            with cancelled_when(lambda: unwanted.is_set() or self._is_closing):
-                return answer()
-
-        if self._is_closing:
-            raise asyncio.CancelledError
-        try:
-            return await asyncio.wrap_future(self._executor.submit(work))
-        except asyncio.CancelledError:
-            unwanted.set()
-            raise
-        except CannotError as reason:
-            raise JsonRpcException(str(reason), FAILED) from None
-
-    def close(self) -> None:
-        """Cancels the present answer, and begins nothing more."""
-        self._is_closing = True
-        self._executor.shutdown(wait=False, cancel_futures=True)
+        if not (future.cancelled() or result.done()):
+            if (error := future.exception()) is not None:
+                result.set_exception(error)
+            else:
+                result.set_result(future.result())
+        result.get_loop().call_soon(self._start)  # once the result was taken note of
+        self._finished()
 
 
 # A run leaves tens of thousands of objects that hold each other. Python's collector would look for them in
@@ -165,7 +153,6 @@ class Tidier:
         gc.disable()
 
     def note(self) -> None:
-        """Notes that a piece of work was done."""
         self._left += 1
         if self._planned is not None:
             self._planned.cancel()
@@ -218,43 +205,23 @@ PATIENCE = 0.2
 """Seconds of solving after which the results of checking are published."""
 
 
-class Listener(Protocol):
-    """Receives results, on the loop's thread."""
-
-    def took_long(self, document: Document) -> None:
-        """Called when the results of checking are all that is known for now."""
-
-    def solved(self, document: Document) -> None:
-        """Called when there is a new outcome."""
-
-    def crashed(self, error: BaseException) -> None:
-        """Called when work ended with an unexpected error."""
-
-
 class Runner:
-    """Checks and runs documents. All methods belong to the loop's thread."""
+    """Checks and runs the documents of a server. All methods belong to the loop's thread."""
 
-    def __init__(
-        self,
-        documents: Documents,
-        workspace: Workspace,
-        listener: Listener,
-        loop: asyncio.AbstractEventLoop,
-        limits: Settings = LIMITS,
-    ) -> None:
-        self.documents, self.workspace, self.listener = documents, workspace, listener
-        self.limits, self.delay = limits, 0.0
+    def __init__(self, server: Server, loop: asyncio.AbstractEventLoop) -> None:
+        self._server, self.documents, self.workspace = server, server.documents, server.open_files
+        self.limits, self.delay = server.limits, 0.0
         self.active: Document | None = None
         """What the user is at: it goes first."""
         self._tidier = Tidier(loop, lambda: any((self.looking.running, self.solving.running)))
-        self.looking = Lane("looking", loop, self._tidier.note)
-        self.solving = Lane("solving", loop, self._tidier.note)
+        self.looking = Lane("looking", self._tidier.note)
+        self.solving = Lane("solving", self._tidier.note)
         self._loop, self._is_closing = loop, False
 
     def warm_up(self) -> None:
         """Loads what the first run and the first questions need while nobody waits for it."""
-        self.solving.put(Job("first run", lambda: run(_example()), lambda future: None))
-        self.solving.put(Job("first questions", _ask_something, lambda future: None))
+        self.solving.put("first run", lambda: run(_example()))
+        self.solving.put("first questions", _ask_something)
 
     def renew(self, document: Document, *, active: bool = False) -> None:
         """Checks and runs a document after a change of its text, or of one that it imports."""
@@ -263,14 +230,9 @@ class Runner:
         document.serial += 1
         version, serial = document.version, document.serial
         world = self.workspace.world(document.path)
-        self.looking.put(
-            Job(
-                document,
-                partial(look, document.path, document.text, world, self.limits),
-                partial(self._looked, document, version, serial),
-            ),
-            first=active,
-        )
+        work = partial(look, document.path, document.text, world, self.limits)
+        looked = self.looking.put(document, work, first=active)
+        looked.add_done_callback(partial(self._looked, document, version, serial))
 
     def renew_dependents(self, path: Path) -> None:
         """Renews the documents that use a file, after a change of it on disk or in the editor."""
@@ -283,30 +245,15 @@ class Runner:
         self, key: Hashable, function: Callable[[], T], is_unwanted: Callable[[], bool], *, first: bool = True
     ) -> T:
         """Returns a result from the solving thread, before waiting work or behind it; cancels older ones."""
-        found: asyncio.Future[T] = self._loop.create_future()
 
         def work() -> T:
             with cancelled_when(lambda: self._is_closing or is_unwanted() or self.solving.waits(key)):
                 checkpoint()
                 return function()
 
-        def done(future: Future[T]) -> None:
-            if found.done():
-                return
-            if (error := future.exception()) is not None:
-                found.set_exception(error)
-            else:
-                found.set_result(future.result())
-
-        def dropped() -> None:
-            if not found.done():
-                found.set_exception(Cancelled())
-
-        self.solving.put(Job(key, work, done, dropped), first=first)
-        return await found
+        return await self.solving.put(key, work, first=first)
 
     def forget(self, document: Document) -> None:
-        """Drops the work of a closed document."""
         self.looking.drop(document)
         self.solving.drop(document)
         if self.active is document:
@@ -319,16 +266,17 @@ class Runner:
         self.solving.close()
         self._tidier.close()
 
-    def _looked(self, document: Document, version: int, serial: int, future: Future[View]) -> None:
-        if not document.is_open:
+    def _looked(self, document: Document, version: int, serial: int, looked: asyncio.Future[View]) -> None:
+        error = looked.exception()
+        if not document.is_open or isinstance(error, Dropped):
             return
         document.seen = serial
-        if (error := future.exception()) is not None:
+        if error is not None:
             document.solved = serial  # nothing will come of this text
-            self.listener.crashed(error)
+            self._server.crashed(error)
         else:
             drawn = document.ran.view.drawn if document.ran is not None else None
-            view = replace(future.result(), drawn=drawn)
+            view = replace(looked.result(), drawn=drawn)
             document.newest = VersionedView(view, version, serial)
             if document.path.is_relative_to(resources.resource("stdlib")):
                 document.solved = serial  # it is of the library, and no program
@@ -344,19 +292,14 @@ class Runner:
 
     def _solve(self, document: Document, known: VersionedView) -> None:
         began = self._loop.time()
-        self.solving.put(
-            Job(
-                document,
-                partial(self._run, document, known, document.was_given_up),
-                partial(self._ran, document, known),
-            ),
-            first=document is self.active,
-        )
+        work = partial(self._run, document, known, document.was_given_up)
+        ran = self.solving.put(document, work, first=document is self.active)
+        ran.add_done_callback(partial(self._ran, document, known))
         self._loop.call_at(began + PATIENCE, self._tell_what_is_known, document, known)
 
     def _tell_what_is_known(self, document: Document, known: VersionedView) -> None:
         if document.is_open and document.seen == known.serial > document.solved:
-            self.listener.took_long(document)
+            self._server.took_long(document)
 
     def _run(self, document: Document, known: VersionedView, is_patient: bool) -> View:
         began = time.monotonic()
@@ -374,26 +317,27 @@ class Runner:
             _ = view.diagnostics  # worked out where it can be given up: the loop's thread reads them
             return view
 
-    def _ran(self, document: Document, known: VersionedView, future: Future[View]) -> None:
-        if not document.is_open or self._is_closing:
+    def _ran(self, document: Document, known: VersionedView, ran: asyncio.Future[View]) -> None:
+        error = ran.exception()
+        if not document.is_open or self._is_closing or isinstance(error, Dropped):
             return
-        if future.cancelled() or isinstance(future.exception(), Cancelled):
+        if isinstance(error, Cancelled):
             document.was_given_up = True
             if document.serial == known.serial:  # it made way for what is more urgent
                 self._solve(document, known)
             return
         document.was_given_up = False
         document.solved = known.serial
-        if (error := future.exception()) is not None:
-            self.listener.crashed(error)
+        if error is not None:
+            self._server.crashed(error)
         else:
-            document.ran = replace(known, view=future.result())
+            document.ran = replace(known, view=ran.result())
             newest = document.newest
             if newest is None or newest.serial == known.serial:
                 document.newest = document.ran
             else:
                 document.newest = replace(newest, view=replace(newest.view, drawn=document.ran.view.drawn))
-            self.listener.solved(document)
+            self._server.solved(document)
         document.tell()
 
 

@@ -212,18 +212,14 @@ _LOST = 1
 
 
 def make(limits: Limits = LIMITS) -> Server:
-    """Returns a server with all requests."""
     server = Server(limits)
-    for register in (
-        register_lifecycle,
-        register_navigation,
-        register_appearance,
-        register_actions,
-        register_hints,
-        register_preview,
-        register_writing,
-    ):
-        register(server)
+    register_lifecycle(server)
+    register_navigation(server)
+    register_appearance(server)
+    register_actions(server)
+    register_hints(server)
+    register_preview(server)
+    register_writing(server)
     return server
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import json
 import logging
-from collections.abc import Callable, Coroutine
+from collections.abc import Callable, Coroutine, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any, TypeVar
@@ -25,19 +25,12 @@ from pygls.protocol import (
     lsp_method,
 )
 
+from aidl_lang.common.diagnostics import Edit
 from aidl_lang.common.records import record
 from aidl_lang.pipeline import Settings as Limits
 from aidl_lang.tools.ide.workspace import Project, Unit, View, Workspace
-from aidl_lang.tools.lsp.documents import (
-    Converter,
-    Document,
-    Documents,
-    Publisher,
-    Settings,
-    VersionedView,
-    converted,
-)
-from aidl_lang.tools.lsp.running import LIMITS, Answers, Runner
+from aidl_lang.tools.lsp import documents
+from aidl_lang.tools.lsp.running import LIMITS, Lane, Runner
 from aidl_lang.version import __version__
 
 # --- The protocol's own part: pygls, made robust against hostile or hasty clients.
@@ -148,9 +141,9 @@ class Asked:
     """The immutable data from which a question is answered, away from the loop."""
 
     uri: str
-    known: VersionedView
-    convert: Converter
-    settings: Settings
+    known: documents.VersionedView
+    convert: documents.Converter
+    settings: documents.Settings
     project: Project
     can: Callable[[str], bool]
     """tells whether the client has a capability"""
@@ -168,25 +161,24 @@ class Server(LanguageServer):
     def __init__(self, limits: Limits = LIMITS) -> None:
         super().__init__("aidl", __version__, protocol_cls=Protocol, converter_factory=converter)
         self.limits = limits
-        self.documents = Documents()
+        self.documents = documents.Documents()
         self.open_files = Workspace()
         self.project = Project(self.open_files)
-        self.settings = Settings()
-        self.publisher = Publisher(self.text_document_publish_diagnostics)
-        self.answers = Answers("answering")
-        self.searches = Answers("searching")
-        self.sweeps = Answers("sweeping")
-        self.on_solved: list[Callable[[Document], None]] = []
-        self.on_closed: list[Callable[[Document], object]] = []
+        self.settings = documents.Settings()
+        self.publisher = documents.Publisher(self.text_document_publish_diagnostics)
+        self.answers = Lane("answering")
+        self.searches = Lane("searching")
+        self.sweeps = Lane("sweeping")
+        self.on_solved: list[Callable[[documents.Document], None]] = []
+        self.on_closed: list[Callable[[documents.Document], object]] = []
         self.runner: Runner
         self._has_told_of_crash = False
         self._background: set[asyncio.Task[None]] = set()
 
     def start(self) -> None:
-        self.runner = Runner(self.documents, self.open_files, self, asyncio.get_running_loop(), self.limits)
+        self.runner = Runner(self, asyncio.get_running_loop())
 
     def close(self) -> None:
-        """Cancels the work under way."""
         self.runner.close()
         for answers in (self.answers, self.searches, self.sweeps):
             answers.close()
@@ -253,13 +245,15 @@ class Server(LanguageServer):
         self.open_files.open = texts if text is None else {**texts, path: text}
         self.runner.renew_dependents(path)
 
-    # --- What comes of them (see `running.Listener`) --------------------------------------------
+    # --- What comes of them ---------------------------------------------------------------------
 
-    def took_long(self, document: Document) -> None:
+    def took_long(self, document: documents.Document) -> None:
+        """Takes note that the results of checking are all that is known for now."""
         if document.newest is not None:
             self._publish(document, document.newest)
 
-    def solved(self, document: Document) -> None:
+    def solved(self, document: documents.Document) -> None:
+        """Takes note of a new outcome."""
         if document.ran is None:
             return
         self._publish(document, document.ran)
@@ -267,6 +261,7 @@ class Server(LanguageServer):
             listener(document)
 
     def crashed(self, error: BaseException) -> None:
+        """Takes note of work that ended with an unexpected error."""
         log.error("work on a program crashed", exc_info=error)
         if not self._has_told_of_crash:
             self._has_told_of_crash = True
@@ -279,20 +274,22 @@ class Server(LanguageServer):
         if source is not exceptions.FeatureRequestError and not is_refusal:
             self.crashed(error)
 
-    def _publish(self, document: Document, known: VersionedView) -> None:
+    def _publish(self, document: documents.Document, known: documents.VersionedView) -> None:
         convert = self.converter(known.view, document.uri)
-        found = converted(known.view.diagnostics, convert, document.uri)
+        found = documents.converted(known.view.diagnostics, convert, document.uri)
         self.publisher.publish(document, known, list(found))
 
     # --- Questions ------------------------------------------------------------------------------
 
-    def converter(self, view: View, own: str = "") -> Converter:
+    def converter(self, view: View, own: str = "") -> documents.Converter:
         """Returns the converter for the view of a document, or of another file."""
         has_versions = self.can("workspace.workspace_edit.document_changes")
         versions = {each.path: each.version for each in self.documents} if has_versions else None
-        return Converter(view, own or self.documents.uri_of(view.path), self.documents, self.unit, versions)
+        return documents.Converter(
+            view, own or self.documents.uri_of(view.path), self.documents, self.unit, versions
+        )
 
-    def document(self, uri: object) -> Document:
+    def document(self, uri: object) -> documents.Document:
         """Returns an open document. Raises JsonRpcInvalidParams."""
         document = self.documents.get(uri) if isinstance(uri, str) else None
         if document is None:
@@ -301,7 +298,7 @@ class Server(LanguageServer):
 
     async def solved_text(
         self, uri: object, seconds: float, version: int | None = None
-    ) -> tuple[Document, VersionedView]:
+    ) -> tuple[documents.Document, documents.VersionedView]:
         """Returns a document as its text, or a version of it, was run. Raises JsonRpcContentModified if that
         is gone.
         """
@@ -312,7 +309,7 @@ class Server(LanguageServer):
             raise exceptions.JsonRpcContentModified("the text has changed")
         return document, known
 
-    async def asked(self, document: Document, patience: float = 0.0) -> Asked | None:
+    async def asked(self, document: documents.Document, patience: float = 0.0) -> Asked | None:
         """Returns the data of the present text or a newer one, solved if in time; None if it is too long."""
         serial = document.serial
         await document.until_seen(serial)
@@ -324,9 +321,15 @@ class Server(LanguageServer):
             return None
         return self.asked_now(document, document.newest)
 
-    def asked_now(self, document: Document, known: VersionedView) -> Asked:
+    def asked_now(self, document: documents.Document, known: documents.VersionedView) -> Asked:
         convert = self.converter(known.view, document.uri)
         return Asked(document.uri, known, convert, self.settings, self.project, self.can)
+
+    async def apply(self, asked: Asked, edits: Sequence[Edit], label: str) -> str:
+        """Has the client make edits of a program; returns why it does not, or ""."""
+        params = types.ApplyWorkspaceEditParams(asked.convert.change(edits), label)
+        answer = await self.workspace_apply_edit_async(params)
+        return "" if answer.applied else answer.failure_reason or "the editor did not change the text"
 
     def answers_to(
         self,

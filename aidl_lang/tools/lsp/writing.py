@@ -20,14 +20,7 @@ from aidl_lang.tools.ide.hover import hover
 from aidl_lang.tools.ide.references import CannotError
 from aidl_lang.tools.ide.signatures import OverloadHelp, signature_help
 from aidl_lang.tools.ide.workspace import Positions
-from aidl_lang.tools.lsp.documents import (
-    ActionRequest,
-    Document,
-    EntryRequest,
-    OfDocument,
-    VersionedView,
-    read,
-)
+from aidl_lang.tools.lsp import documents
 from aidl_lang.tools.lsp.running import FAILED, LIMITS
 from aidl_lang.tools.lsp.server import Asked, Server
 from aidl_lang.tools.ranges import described as walked
@@ -51,7 +44,7 @@ class Ends:
         self._found: dict[str, tuple[int, lenses.Found]] = {}
         server.on_closed.append(lambda document: self._found.pop(document.uri, None))
 
-    def of(self, uri: str, known: VersionedView) -> lenses.Found | None:
+    def of(self, uri: str, known: documents.VersionedView) -> lenses.Found | None:
         version, found = self._found.get(uri, (None, None))
         return found if version == known.version else None
 
@@ -65,21 +58,23 @@ class Ends:
         told = {"tried": described(sweep), "left": sweep.left, "seconds": sweep.seconds, "range": walks}
         return told | {"ok": sweep.ok and found.ranges.ok}
 
-    async def walk(self, given: OfDocument) -> dict[str, Any]:
+    async def walk(self, given: documents.OfDocument) -> dict[str, Any]:
         """Walks each param of a document, unless that was done for the lenses."""
         document, known = await self._workable(given.uri)
         found = self.of(document.uri, known)
         walks = found.ranges if found is not None else await self._asked(document, known, lenses.between)
         return walked(document.uri, walks) | {"summary": summary(walks)}
 
-    async def _workable(self, uri: object) -> tuple[Document, VersionedView]:
+    async def _workable(self, uri: object) -> tuple[documents.Document, documents.VersionedView]:
         """Returns a document as it was run, if its params can be tried."""
         document, known = await self._server.solved_text(uri, _LONGEST)
         if not lenses.can_be_tried(known.view):
             raise JsonRpcException(_NOTHING, FAILED)
         return document, known
 
-    async def _asked(self, document: Document, known: VersionedView, function: Callable[..., T]) -> T:
+    async def _asked(
+        self, document: documents.Document, known: documents.VersionedView, function: Callable[..., T]
+    ) -> T:
         """Returns what comes of trying. Raises JsonRpcContentModified if the text changes before."""
         loop = asyncio.get_running_loop()
         told = await self._progress()
@@ -143,28 +138,27 @@ def register_hints(server: Server) -> None:
 
     @server.feature("aidl/ranges")
     async def walk(params: Any) -> dict[str, Any]:
-        return await ends.walk(read(params, OfDocument))
+        return await ends.walk(documents.read(params, documents.OfDocument))
 
     @server.answers_to(types.TEXT_DOCUMENT_CODE_LENS, types.CodeLensOptions(), patience=_PATIENCE)
     def lens(asked: Asked, params: types.CodeLensParams) -> list[types.CodeLens]:
         answered.note(asked)
         if not asked.settings.lenses:
             return []
-        made = []
-        for each in lenses.lenses(asked.view):
-            command = types.Command(each.title, _OPEN_PREVIEW, arguments=[asked.uri])
-            made.append(types.CodeLens(asked.convert.range(each.span), command))
-        for each in lenses.end_lenses(asked.view, ends.of(asked.uri, asked.known)):
-            command = types.Command(each.title, CHECK_ENDS, arguments=[asked.uri])
-            made.append(types.CodeLens(asked.convert.range(each.span), command))
-        return made
+        found = [(_OPEN_PREVIEW, each) for each in lenses.lenses(asked.view)]
+        at_ends = lenses.end_lenses(asked.view, ends.of(asked.uri, asked.known))
+        found += [(CHECK_ENDS, each) for each in at_ends]
+        return [
+            types.CodeLens(asked.convert.range(span), types.Command(title, command, arguments=[asked.uri]))
+            for command, (span, title) in found
+        ]
 
     @server.answers_to(types.TEXT_DOCUMENT_INLAY_HINT, types.InlayHintOptions(), patience=_PATIENCE)
     def inlay(asked: Asked, params: types.InlayHintParams) -> list[types.InlayHint]:
         answered.note(asked)
-        others, shown = asked.settings.solved_values, {lenses.InlayKind.READING: asked.settings.readings}
+        shows = {True: asked.settings.readings, False: asked.settings.solved_values}
         found = lenses.inlays(asked.view, asked.convert.span(params.range))
-        return [_hint(each, asked) for each in found if shown.get(each.kind, others)]
+        return [_hint(each, asked) for each in found if shows[each.is_reading]]
 
 
 class _Answered:
@@ -181,7 +175,7 @@ class _Answered:
         known = asked.known
         self._told[asked.uri] = known.version, known.serial if known.view.outcome is not None else None
 
-    def _solved(self, document: Document) -> None:
+    def _solved(self, document: documents.Document) -> None:
         told, ran = self._told.get(document.uri), document.ran
         if told is not None and ran is not None and told[0] == ran.version and told[1] != ran.serial:
             self._server.refresh_hints()
@@ -215,7 +209,7 @@ def register_actions(server: Server) -> None:
     async def resolve(action: types.CodeAction) -> types.CodeAction:
         if action.data is None:
             return action
-        given = read(action.data, ActionRequest)
+        given = documents.read(action.data, documents.ActionRequest)
         document = server.documents.get(given.uri)
         asked = await server.asked(document) if document is not None else None
         if asked is None or asked.known.version != given.version:
@@ -281,40 +275,34 @@ def _is_mended(shown: types.Diagnostic, action: Action, asked: Asked) -> bool:
     return shown.range == asked.convert.range(mends.span)
 
 
-def _worked_out(asked: Asked, given: ActionRequest, title: str) -> types.WorkspaceEdit:
+def _worked_out(asked: Asked, given: documents.ActionRequest, title: str) -> types.WorkspaceEdit:
     for action in actions(asked.view, given.start, given.end):
         if (action.title, action.kind) == (title, given.kind):
             return asked.convert.change(action.make())
     raise JsonRpcContentModified("the text has changed")
 
 
-_KIND = {
-    "keyword": types.CompletionItemKind.Keyword,
-    "kind": types.CompletionItemKind.Keyword,
-    "snippet": types.CompletionItemKind.Snippet,
-    "unit": types.CompletionItemKind.Unit,
-    "attribute": types.CompletionItemKind.Property,
-    "color": types.CompletionItemKind.Color,
-    "type": types.CompletionItemKind.TypeParameter,
-    "file": types.CompletionItemKind.File,
-    "word": types.CompletionItemKind.EnumMember,
-    "argument": types.CompletionItemKind.Property,
-    "param": types.CompletionItemKind.Constant,
-    "let": types.CompletionItemKind.Constant,
-    "var": types.CompletionItemKind.Variable,
-    "loop variable": types.CompletionItemKind.Variable,
-    "parameter": types.CompletionItemKind.Variable,
-    "geometry": types.CompletionItemKind.Field,
-    "structure": types.CompletionItemKind.Class,
-    "field": types.CompletionItemKind.Field,
-    "method": types.CompletionItemKind.Method,
-    "function": types.CompletionItemKind.Function,
-    "shape": types.CompletionItemKind.Struct,
-    "constraint": types.CompletionItemKind.Operator,
-    "template": types.CompletionItemKind.Interface,
-    "imported file": types.CompletionItemKind.Module,
-    "built-in name": types.CompletionItemKind.Constant,
+_MEANT = {
+    "Keyword": ("keyword", "kind"),
+    "Snippet": ("snippet",),
+    "Unit": ("unit",),
+    "Property": ("attribute", "argument"),
+    "Color": ("color",),
+    "TypeParameter": ("type",),
+    "File": ("file",),
+    "EnumMember": ("word",),
+    "Constant": ("param", "let", "built-in name"),
+    "Variable": ("var", "loop variable", "parameter"),
+    "Field": ("geometry", "field"),
+    "Class": ("structure",),
+    "Method": ("method",),
+    "Function": ("function",),
+    "Struct": ("shape",),
+    "Operator": ("constraint",),
+    "Interface": ("template",),
+    "Module": ("imported file",),
 }
+_KIND = {kind: types.CompletionItemKind[name] for name, kinds in _MEANT.items() for kind in kinds}
 
 
 _HOVER_PATIENCE = 0.3
@@ -331,7 +319,7 @@ def register_writing(server: Server) -> None:
     @server.feature(types.COMPLETION_ITEM_RESOLVE)
     async def resolve(item: types.CompletionItem) -> types.CompletionItem:
         if item.data is not None:
-            given = read(item.data, EntryRequest)
+            given = documents.read(item.data, documents.EntryRequest)
             chosen = lists.find(given.uri, given.list, given.entry)
             if chosen is not None:
                 said = await server.answers.ask(lambda: chosen.documentation)
@@ -392,7 +380,7 @@ def _item(each: Completion, asked: Asked, snippets: bool, data: dict[str, object
         sort_text=f"{each.rank:04}",
         insert_text_format=snippet if is_snippet else types.InsertTextFormat.PlainText,
         text_edit=types.TextEdit(edit.range(each.span), each.text if is_snippet else each.plain),
-        additional_text_edits=[edit.edit(e) for e in each.extra] or None,
+        additional_text_edits=edit.edits(each.extra) or None,
         data=data,
     )
 
@@ -401,7 +389,7 @@ def _overload(overload: OverloadHelp) -> types.SignatureInformation:
     positions = Positions(overload.label)  # which are of UTF-16 here, whatever was agreed for texts
     parameters = []
     for parameter in overload.parameters:
-        start, end = (positions.length(0, offset) for offset in parameter.place)
+        (_, start), (_, end) = map(positions.position, parameter.place)  # of the one line
         about = _markdown(parameter.about) if parameter.about else None
         parameters.append(types.ParameterInformation((start, end), about))
     about = _markdown(overload.about) if overload.about else None

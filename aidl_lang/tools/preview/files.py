@@ -193,7 +193,6 @@ class Manuscript:
         self.take(text_of(self.path))
 
     def take(self, found: str) -> None:
-        """Takes note of what was found in the file."""
         self.looks += 1
         if self.text is None or (found != self._in_file and self.is_saved):
             self._is_foreign = self.text is not None

@@ -6,7 +6,7 @@ import asyncio
 import json
 import re
 from collections import deque
-from collections.abc import Callable, Coroutine, Iterable, Mapping
+from collections.abc import Callable, Coroutine, Iterable, Mapping, Sequence
 from functools import partial
 from itertools import count
 from pathlib import Path
@@ -17,11 +17,12 @@ from lsprotocol.types import ErrorCodes, LSPErrorCodes, MessageType
 from pygls.exceptions import JsonRpcInvalidParams
 
 from aidl_lang.common.diagnostics import Edit
-from aidl_lang.common.source import SourceFile, Span
+from aidl_lang.common.source import SourceFile
 from aidl_lang.tools.ide.references import CannotError
 from aidl_lang.tools.ide.workspace import SETTINGS, Positions
 from aidl_lang.tools.lsp.documents import Document, read
 from aidl_lang.tools.lsp.serve import make
+from aidl_lang.tools.lsp.server import Asked
 from aidl_lang.tools.preview import files
 from aidl_lang.tools.preview.files import Manuscript
 
@@ -88,7 +89,6 @@ class Page:
             self.tell(TOO_MUCH)
 
     async def next(self) -> str:
-        """Returns the next message for it."""
         while not self._waiting:
             self._news.clear()
             await self._news.wait()
@@ -150,12 +150,14 @@ _WALK = "aidl/ranges"
 _METHODS = _EDITS | {_ATTEMPT, _WALK, "aidl/preview", "aidl/export", "aidl/exports"}
 """Requests that a page may send to the server."""
 _TYPING = "aidl/type"
-OWN = frozenset({"aidl/undo", "aidl/redo", "aidl/save", "aidl/takeFile"})
-"""Requests about the text, which are answered here."""
-_CLIENT: Json = {
-    "general": {"positionEncodings": ["utf-16"]},
-    "workspace": {"applyEdit": True, "workspaceEdit": {"documentChanges": True}},
+OWN: Mapping[str, Callable[[Manuscript, Json], None]] = {
+    "aidl/undo": lambda text, _: text.undo(),
+    "aidl/redo": lambda text, _: text.redo(),
+    "aidl/save": lambda text, given: text.save(anyway=given.get("anyway") is True),
+    "aidl/takeFile": lambda text, _: text.take_file(),
 }
+"""Requests about the text, which are answered here."""
+_CLIENT: Json = {"general": {"positionEncodings": ["utf-16"]}}
 
 
 class Host:
@@ -171,6 +173,7 @@ class Host:
         self.uri = path.as_uri()
         self.pages: list[Page] = []
         self.server = make(SETTINGS)
+        self.server.apply = self._apply  # type: ignore[method-assign]  # no client does it
         self._gone = Page()
         """carries out the edits of pages that left"""
         self._version = 0
@@ -192,7 +195,6 @@ class Host:
         await self.noticed()
 
     def close(self) -> None:
-        """Cancels the work under way."""
         self._rested()
         self.server.close()
 
@@ -302,7 +304,7 @@ class Host:
             return
         if request.method == _TYPING:
             self._spawn(self._answer(page, request, partial(self._type, page)))
-        elif request.method not in _METHODS | OWN:
+        elif request.method not in _METHODS and request.method not in OWN:
             page.refuse(request, ErrorCodes.MethodNotFound, "pages cannot ask for this")
         elif request.method == _ATTEMPT:
             if page.attempt is not None:
@@ -335,7 +337,7 @@ class Host:
 
     def _forward(self, page: Page, request: Request, then: Callable[[], None]) -> None:
         if request.method in OWN:
-            self._spawn(self._answer(page, request, self._changes[request.method], then))
+            self._spawn(self._answer(page, request, partial(OWN[request.method], self.text), then))
             return
 
         def answered(message: Json) -> None:
@@ -346,15 +348,6 @@ class Host:
         self._ask(request.method, {**request.params, "viewer": page.name}, answered)
 
     # --- The text
-
-    @property
-    def _changes(self) -> dict[str, Callable[[Json], None]]:
-        return {
-            "aidl/undo": lambda _: self.text.undo(),
-            "aidl/redo": lambda _: self.text.redo(),
-            "aidl/save": lambda given: self.text.save(anyway=given.get("anyway") is True),
-            "aidl/takeFile": lambda _: self.text.take_file(),
-        }
 
     async def _answer(
         self,
@@ -407,8 +400,6 @@ class Host:
         params: Json = message.get("params") or {}
         if method is None:
             self._asked.pop(message["id"])(message)
-        elif "id" in message:
-            self._spawn(self._reply(message["id"], params if method == "workspace/applyEdit" else None))
         elif method == "aidl/previewChanged":
             self._rested()
             for page in (each for each in self.pages if each.name == params["viewer"]):
@@ -418,53 +409,36 @@ class Host:
         elif method == "window/showMessage":
             self._tell_all(message)
 
-    async def _reply(self, number: object, edit: Json | None) -> None:
-        made = None if edit is None else await self._edited(edit)
-        self._receive({"id": number, "result": made})
-
-    async def _edited(self, params: Json) -> Json:
-        label, changes = params.get("label") or "Change", params["edit"]["documentChanges"]
-        uri_of = self.server.documents.uri_of
+    async def _apply(self, asked: Asked, edits: Sequence[Edit], label: str) -> str:
+        """Makes the edits that the server asks for; returns why it cannot, or ""."""
         async with self._turn:
-            known = {uri_of(path): (path, source) for path, source in self._sources().items()}
             try:
-                await asyncio.to_thread(self._edit, label, changes, known)
+                await asyncio.to_thread(self._edit, asked, edits, label)
             except CannotError as reason:
-                return {"applied": False, "failureReason": str(reason)}
+                return str(reason)
         await self.noticed()
-        return {"applied": True}
+        return ""
 
-    def _edit(self, label: str, changes: list[Json], known: Mapping[str, tuple[Path, SourceFile]]) -> None:
+    def _edit(self, asked: Asked, edits: Sequence[Edit], label: str) -> None:
         """Edits each file as a whole or not at all. Raises CannotError."""
+        by_source: dict[SourceFile, list[Edit]] = {}
+        for edit in edits:
+            by_source.setdefault(edit.span.source, []).append(edit)
         own: SourceFile | None = None
-        edits: list[Edit] = []
         others = {}
-        for change in changes:
-            path, source = known.get(change["textDocument"]["uri"], (None, None))
-            if path is None or source is None:
+        for source, made in by_source.items():
+            path = asked.view.file(source)
+            if path is None or asked.view.is_library(source):
                 raise CannotError("this cannot be changed from here")
-            if change["textDocument"]["version"] not in (None, self._version):
-                raise CannotError("the text has changed meanwhile")
-            made = _edits(source, change["edits"])
-            if path == self.path:
-                own, edits = source, made
-            else:
+            if path != self.path:
                 others[path] = files.rewritten(path, source, made)
-        self.text.set(label, own, edits, others)
+            elif asked.known.version == self._version:
+                own = source
+            else:
+                raise CannotError("the text has changed meanwhile")
+        self.text.set(label, own, by_source.get(own, []) if own is not None else [], others)
 
     def _spawn(self, work: Coroutine[Any, Any, None]) -> None:
         task = self._loop.create_task(work)
         self._tasks.add(task)
         task.add_done_callback(self._tasks.discard)
-
-
-def _edits(source: SourceFile, edits: Iterable[Json]) -> list[Edit]:
-    positions = Positions(source.text)
-
-    def offset(place: Json) -> int:
-        return positions.offset(place["line"], place["character"])
-
-    return [
-        Edit(Span(source, offset(e["range"]["start"]), offset(e["range"]["end"])), e["newText"])
-        for e in edits
-    ]

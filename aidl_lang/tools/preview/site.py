@@ -121,7 +121,6 @@ _CONNECTIONS = 8 * MOST_PAGES
 
 
 def serve(host: Host, door: Door) -> None:
-    """Shows a program until it is interrupted."""
     make_room()
     app = site(host, door.token, door.addresses)
     door.serve(app, _CONNECTIONS, ws_max_size=LONGEST, ws_max_queue=8, ws_per_message_deflate=False)

@@ -78,7 +78,6 @@ class Entry:
 
     @property
     def nodes(self) -> tuple[ast.Callable, ...]:
-        """The callable definitions."""
         return tuple(o.node for o in self.overloads if o.node is not None and not isinstance(o.node, ast.Let))
 
 

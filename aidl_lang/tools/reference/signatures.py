@@ -6,16 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from aidl_lang.checking import library
-from aidl_lang.checking.types import (
-    PARAMETER_TYPES,
-    PEERS,
-    PUBLIC,
-    NumberType,
-    TextType,
-    TruthType,
-    parameter_type,
-)
+from aidl_lang.checking import library, types
 from aidl_lang.common.names import fold
 from aidl_lang.common.records import record
 from aidl_lang.syntax import ast
@@ -51,7 +42,7 @@ def parts(node: ast.Callable) -> list[Part]:
     """Returns what a body declares for its users, of a function its shape: no `let` that only it uses."""
     if isinstance(node, ast.FunctionDefinition):
         made = made_shape(node)
-        shape = library.load().callables[made][0].node if made and made not in PUBLIC else None
+        shape = library.load().callables[made][0].node if made and made not in types.PUBLIC else None
         return parts(shape) if isinstance(shape, ast.ShapeDefinition) else []
     if not isinstance(node, ast.ShapeDefinition | ast.Structure):
         return []
@@ -98,7 +89,7 @@ def _type(statement: ast.Assign | ast.Structure) -> str:
 
 def _is_shape(name: str) -> bool:
     known = library.load().callables.get(name)
-    return name in PUBLIC or (known is not None and isinstance(known[0].node, ast.ShapeDefinition))
+    return name in types.PUBLIC or (known is not None and isinstance(known[0].node, ast.ShapeDefinition))
 
 
 def made_shape(node: ast.FunctionDefinition) -> str | None:
@@ -116,10 +107,10 @@ def things(node: ast.Callable) -> list[ast.Parameter]:
 
 
 def _is_option(parameter: ast.Parameter) -> bool:
-    kind = parameter_type(parameter)
+    kind = types.parameter_type(parameter)
     return (
         parameter.default is not None
-        or isinstance(kind, NumberType | TextType | TruthType)
+        or isinstance(kind, types.NumberType | types.TextType | types.TruthType)
         or parameter.name.text in _OPTIONS
     )
 
@@ -127,7 +118,7 @@ def _is_option(parameter: ast.Parameter) -> bool:
 def gathers(node: ast.Callable) -> bool:
     """True if any number of things may be given, because the first parameter is a list."""
     kind = node.parameters[0].type if node.parameters else None
-    return kind is not None and PARAMETER_TYPES.get(fold(kind.text)) == PARAMETER_TYPES["list"]
+    return kind is not None and types.PARAMETER_TYPES.get(fold(kind.text)) == types.PARAMETER_TYPES["list"]
 
 
 def held(node: ast.Callable) -> str:
@@ -136,7 +127,7 @@ def held(node: ast.Callable) -> str:
         return ""
     if any(p.name.text == VALUE for p in node.parameters):
         return "the value"
-    peers = [p.name.text for p in node.parameters if p.type is not None and fold(p.type.text) in PEERS]
+    peers = [p.name.text for p in node.parameters if p.type is not None and fold(p.type.text) in types.PEERS]
     if gathers(node) and peers:
         if others := [p.name.text for p in things(node) if p.name.text not in peers]:
             return f"`{others[-1]}`"
@@ -192,7 +183,7 @@ def exactness(node: ast.Callable) -> dict[str, str]:
     """Returns how a constraint meets each length and angle: `exactly`, `at least` or, by name, `at most`."""
     if not isinstance(node, ast.ConstraintDefinition):
         return {}
-    measures = [p.name.text for p in node.parameters if isinstance(parameter_type(p), NumberType)]
+    measures = [p.name.text for p in node.parameters if isinstance(types.parameter_type(p), types.NumberType)]
     found = {name: _exactness_of(name, node, ()) for name in measures}
     return {name: word for name, word in found.items() if word}
 
@@ -230,7 +221,6 @@ def relates_boxes(node: ast.ConstraintDefinition, around: _Constraints = ()) -> 
 
 
 def _reads_boxes(name: str) -> bool:
-    """True for the name of functions of boxes."""
     nodes = [signature.node for signature in library.load().callables.get(name, ())]
     return bool(nodes) and all(isinstance(n, ast.FunctionDefinition) and _takes_box(n) for n in nodes)
 

@@ -124,7 +124,6 @@ class Columns:
         return [*self.given, *self._results]
 
     def cells(self, row: Row) -> list[Cell]:
-        """Returns the cells of a row, in the order of the names."""
         variant, outcome = row.variant, row.outcome
         given: list[Cell] = [variant.number]
         given += [variant.labels.get(name) for name in self._plan.labels]
@@ -341,7 +340,6 @@ class Outputs:
 
     @property
     def suffixes(self) -> tuple[str, ...]:
-        """Returns the formats of the drawings."""
         return tuple(dict.fromkeys(each.suffix for each in self.patterns))
 
     def keep(self, program: str) -> Path | None:

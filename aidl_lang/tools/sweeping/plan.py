@@ -48,7 +48,6 @@ class Span:
 
     @property
     def steps(self) -> int:
-        """Returns how often the step fits."""
         return math.floor((self.high - self.low) / self.step * (1 + 1e-12) + _SLACK) if self.step else 0
 
 
@@ -252,12 +251,11 @@ class Variant:
 
 @record()
 class Rows:
-    """The rows of a table. `labels` are the columns that are no params."""
+    """The rows of a table: the values of its params in each, and its other columns, the `labels`."""
 
     params: tuple[str, ...]
     labels: tuple[str, ...]
-    values: tuple[Mapping[str, Value], ...]
-    labelled: tuple[Mapping[str, str], ...]
+    rows: tuple[tuple[Mapping[str, Value], Mapping[str, str]], ...]
 
 
 @record()
@@ -277,7 +275,6 @@ class Plan:
 
     @property
     def paths(self) -> tuple[str, ...]:
-        """Returns the params that are set."""
         return (*(self.rows.params if self.rows else ()), *(axis.path for axis in self.axes))
 
     @property
@@ -288,28 +285,22 @@ class Plan:
     def __len__(self) -> int:
         if self.drawn is not None:
             return self.drawn[0]
-        return (len(self.rows.values) if self.rows else 1) * prod(len(axis.values) for axis in self.axes)
+        return (len(self.rows.rows) if self.rows else 1) * prod(len(axis.values) for axis in self.axes)
 
     def __iter__(self) -> Iterator[Variant]:
         if self.drawn is not None:
             yield from self._drawn(*self.drawn)
             return
-        rows: Sequence[tuple[Mapping[str, Value], Mapping[str, str]]] = [({}, {})]
-        if self.rows is not None:
-            rows = list(zip(self.rows.values, self.rows.labelled, strict=True))
-        number = 0
-        for values, labels in rows:
-            for chosen in product(*(axis.values for axis in self.axes)):
-                number += 1
-                paths = (axis.path for axis in self.axes)
-                yield Variant(number, {**values, **dict(zip(paths, chosen, strict=True))}, labels)
+        paths = [axis.path for axis in self.axes]
+        rows = self.rows.rows if self.rows is not None else [({}, {})]
+        grid = ((row, chosen) for row in rows for chosen in product(*(axis.values for axis in self.axes)))
+        for number, ((values, labels), chosen) in enumerate(grid, 1):
+            yield Variant(number, {**values, **dict(zip(paths, chosen, strict=True))}, labels)
 
     def _drawn(self, count: int, seed: int) -> Iterator[Variant]:
         for number in range(1, count + 1):
-            values = {
-                axis.path: _draw(axis, random.Random(f"{seed} {axis.path} {number}")) for axis in self.axes
-            }
-            yield Variant(number, values, {})
+            chances = ((axis, random.Random(f"{seed} {axis.path} {number}")) for axis in self.axes)
+            yield Variant(number, {axis.path: _draw(axis, chance) for axis, chance in chances}, {})
 
 
 def _draw(axis: Axis, chance: random.Random) -> Value:
@@ -380,25 +371,19 @@ def read_table(path: Path, knobs: Sequence[Knob], reads: Reads) -> Rows:
     columns = _columns(path, head, knobs)
     params = [(k, knob) for k, knob in enumerate(columns) if knob is not None]
     labels = [(k, name.strip()) for k, name in enumerate(head) if columns[k] is None]
-    values: list[dict[str, Value]] = []
-    labelled: list[dict[str, str]] = []
+    found: list[tuple[dict[str, Value], dict[str, str]]] = []
     for line, row in rows:
         if not any(row):
             continue
         if len(row) != len(head):
             raise _wrong(f"line {line} of `{path}` has {len(row)} cells, its first line {len(head)}")
-        if len(values) == MOST:
+        if len(found) == MOST:
             raise _wrong(f"`{path}` has more than {MOST} rows", "sweep a part of them at a time")
-        values.append({knob.path: value(knob, row[k]) for k, knob in params if row[k]})
-        labelled.append({name: row[k] for k, name in labels})
-    if not values:
+        values = {knob.path: value(knob, row[k]) for k, knob in params if row[k]}
+        found.append((values, {name: row[k] for k, name in labels}))
+    if not found:
         raise _wrong(f"`{path}` has no rows below its first line")
-    return Rows(
-        tuple(knob.path for _, knob in params),
-        tuple(name for _, name in labels),
-        tuple(values),
-        tuple(labelled),
-    )
+    return Rows(tuple(knob.path for _, knob in params), tuple(name for _, name in labels), tuple(found))
 
 
 def _cells(path: Path, reads: Reads) -> Iterator[tuple[int, list[str]]]:

@@ -6,6 +6,7 @@ import shlex
 import time
 from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from dataclasses import field, replace
+from functools import partial
 from pathlib import Path, PurePath
 from typing import TYPE_CHECKING, Any
 
@@ -140,7 +141,8 @@ def _escaped(word: str) -> str:
     return "$'" + "".join(map(one, word)) + "'"
 
 
-# --- The run of a sweep: what is kept is taken, the rest is computed, and outputs are written.
+# --- A sweep, for the command and as Python has it: an iterator of results, which is a table as well. What is
+# kept is taken, the rest is computed, and outputs are written.
 
 _PAUSE = 0.2
 """Seconds after which the run looks whether it is still wanted."""
@@ -196,12 +198,18 @@ class Progress:
     given_again: int
 
 
-@record(frozen=False)
-class Session:
-    """One run of a sweep. Iterate over it to run it; each row is yielded as it comes."""
+@record(frozen=False, eq=False)
+class Sweep:
+    """The variants of a program. Iterating over it runs it, and yields a result for each variant as it comes;
+    a second time it yields what is known, and goes on where the first was left.
+
+    A result has `number`, `params`, `ok`, `status`, `measures`, `message`, `files` and `command`; its
+    `outcome` has the rest.
+    """
 
     job: Job
-    engine: Engine
+    start: Callable[[], Engine]
+    """Starts what compiles, once a result is asked for."""
     listen: Callable[[Progress], None] = lambda progress: None
     rows: list[Row] = field(default_factory=list)
     failed: int = 0
@@ -209,6 +217,8 @@ class Session:
     renamed: int = 0
     seconds: float = 0.0
     was_stopped: bool = False
+    given_again: int = 0
+    """How many variants were begun once more, because what compiled them was gone."""
     stale: list[str] = field(default_factory=list)
     """Files of earlier runs that stand where failing variants have none to write."""
     unfinished: Path | None = None
@@ -221,44 +231,117 @@ class Session:
         self._seconds = job.seconds or patience(job.bundle.settings, 2 + len(self._making.suffixes))
         self._bundle = job.bundle
         self._store: Store | None = None
-        self._crew: Crew[int, Outcome] = Crew(self.engine)
+        self._crew: Crew[int, Outcome] | None = None
         self._open: dict[int, Variant] = {}
         self._rounds: dict[int, int] = {}
+        self._running = self._rows()
+
+    @classmethod
+    def begun(
+        cls,
+        source: SourceFile,
+        world: World | None,
+        params: Mapping[str, object],
+        asked: tuple[Options, str | None, bool],
+        settings: Settings | None,
+        *,
+        outputs: Sequence[str],
+        table: str | Path | None,
+        drawn: tuple[int, int] | None,
+        on: tuple[str, int | None],
+        **how: Any,
+    ) -> Sweep:
+        """Returns a sweep that is about to run; `how` has fields of the `Job`. Raises AidlError."""
+        bundle, gathering, knobs = opened(source, world, settings or Settings())
+        axes = [_axis(name, values, knobs, is_drawn=drawn is not None) for name, values in params.items()]
+        rows = None if table is None else read_table(Path(table), knobs, gathering.reads)
+        plan = planned(knobs, axes, rows, drawn)
+
+        def command(variant: Variant, name: str) -> str:
+            return reproducing(source.name, plan, variant, name)
+
+        options, fallback, best_effort = asked
+        making = Making(options=options, best_effort=best_effort)
+        wanted = sorted_outputs(outputs, plan, gathering.reads, fallback)
+        job = Job(plan, bundle, gathering, making, wanted, command, **how)
+        return cls(job, partial(engine, *on, len(plan), wanted.names))
+
+    def __len__(self) -> int:
+        """The number of variants."""
+        return len(self.job.plan)
+
+    def __iter__(self) -> Iterator[Row]:
+        place = 0
+        while place < len(self.rows) or next(self._running, None) is not None:
+            yield self.rows[place]
+            place += 1
+
+    def close(self) -> None:
+        """Gives up what is not done. With outputs or a cache, what is done is kept."""
+        if self._crew is not None:
+            self._running.close()
+
+    def __enter__(self) -> Sweep:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
 
     @property
     def is_complete(self) -> bool:
-        return len(self.rows) == len(self.job.plan)
+        return len(self.rows) == len(self)
+
+    @property
+    def results(self) -> list[Row]:
+        """All results in the order of the variants; runs the sweep to its end."""
+        return in_order(list(self))
 
     @property
     def turns(self) -> list[str]:
-        """Returns a sentence for each two neighbours of different kind."""
-        return list(turns(self.rows))
+        """A sentence for each two results that are neighbours in one param, and of different kind."""
+        return list(turns(self.results))
 
     @property
-    def given_again(self) -> int:
-        """How many variants were begun once more, because what compiled them was gone."""
-        return self._crew.given_again
+    def failures(self) -> list[Row]:
+        """The results that are not `ok`."""
+        return [row for row in self.results if not row.ok]
 
-    def __iter__(self) -> Iterator[Row]:
+    def to_arrow(self) -> pyarrow.Table:
+        """Returns the results as a table of Arrow. Raises AidlError without the package `pyarrow`."""
+        return as_arrow(Columns(self.job.plan, self.job.timings), self.results)
+
+    def to_pandas(self) -> Any:
+        """Returns the results as a data frame of pandas. Raises AidlError without the packages."""
+        require("pandas", "a data frame", "parquet")
+        return self.to_arrow().to_pandas()
+
+    def __repr__(self) -> str:
+        return f"<aidl_lang.Sweep {len(self.rows)} of {len(self)} variants>"
+
+    # --- The run --------------------------------------------------------------------------------
+
+    def _rows(self) -> Generator[Row, None, None]:
         """Runs the sweep. Whatever ends it, what is done is kept where there are outputs; tables last."""
-        start, job = time.monotonic(), self.job
-        drawings = Drawings(job.outputs, job.plan, job.world.reads)
-        self._store, own = self._opened()
-        self.renamed, self.unfinished = drawings.renamed, own
+        engine, job = self.start(), self.job
+        began, self._crew = time.monotonic(), Crew(engine)
         try:
-            for done in self._run():
+            drawings = Drawings(job.outputs, job.plan, job.world.reads)
+            self._store, own = self._opened()
+            self.renamed, self.unfinished = drawings.renamed, own
+            for done in self._run(self._crew):
+                if done is not None:
+                    self.rows.append(self._row(*done, drawings))
+                self._tell(engine, self._crew)
                 if done is None:
-                    self._tell()
                     continue
-                row = self._row(*done, drawings)
-                self.rows.append(row)
-                self._tell()
+                row = self.rows[-1]
                 yield row
                 if job.stops_on_error and not row.ok:
                     self.was_stopped = not self.is_complete
                     break
         finally:
-            self.seconds = time.monotonic() - start
+            self.seconds = time.monotonic() - began
+            engine.close()
             if self._store is not None:
                 self._store.close()
         self._write_tables()
@@ -267,30 +350,30 @@ class Session:
             if own is not None:
                 keeping.remove(own)
 
-    def _run(self) -> Iterator[_Done | None]:
+    def _run(self, crew: Crew[int, Outcome]) -> Iterator[_Done | None]:
         """Yields what is done; None now and then while there is nothing new."""
         waiting = iter(self.job.plan)
         is_over = False
         try:
-            while not is_over or self._crew:
+            while not is_over or crew:
                 checkpoint()
-                while not is_over and self._crew.has_room:
+                while not is_over and crew.has_room:
                     if (each := next(waiting, None)) is None:
                         is_over = True
                     elif kept := self._store and self._store.get(self._key(each), self._digest):
                         yield each, kept, True
                     else:
-                        self._give(each)
-                if not self._crew:
+                        self._give(crew, each)
+                if not crew:
                     continue
-                came = self._crew.came(_PAUSE)
+                came = crew.came(_PAUSE)
                 if not came:
                     yield None
                 for number, found in came:
-                    if (done := self._came(number, found)) is not None:
+                    if (done := self._came(crew, number, found)) is not None:
                         yield done
         finally:
-            self._crew.cancel()
+            crew.cancel()
 
     def _key(self, each: Variant) -> str:
         return keeping.key(self._bundle, each.params(self.job.plan.knobs), self._making)
@@ -300,15 +383,15 @@ class Session:
         self.job.world.gather([path])
         return digest_of(files[path]) if path in files else "no such path"
 
-    def _give(self, each: Variant) -> None:
+    def _give(self, crew: Crew[int, Outcome], each: Variant) -> None:
         files = self.job.world.files
         if len(files) > len(self._bundle.files):
             self._bundle = replace(self._bundle, files=dict(files))
         self._open[each.number] = each
         params = each.params(self.job.plan.knobs)
-        self._crew.give(each.number, self._seconds, variant, self._bundle, params, self._making)
+        crew.give(each.number, self._seconds, variant, self._bundle, params, self._making)
 
-    def _came(self, number: int, found: Outcome | Broke) -> _Done | None:
+    def _came(self, crew: Crew[int, Outcome], number: int, found: Outcome | Broke) -> _Done | None:
         """Returns a variant that is done; None if it goes round once more, with the files it asked for."""
         each = self._open.pop(number)
         outcome = found if isinstance(found, Outcome) else _broken(found)
@@ -316,7 +399,7 @@ class Session:
             self._rounds[number] = self._rounds.get(number, 0) + 1
             self.job.world.gather(outcome.missing)
             if self._rounds[number] < _ROUNDS:
-                self._give(each)
+                self._give(crew, each)
                 return None
             outcome = Outcome("broken", False, (Fault("E0603", "the program asks for ever new files"),))
         if self._store is not None and outcome.status != "broken":
@@ -349,10 +432,11 @@ class Session:
         command = self.job.command(each, names[0] if names else "")
         return Row(each, replace(outcome, files={}), tuple(written), command)
 
-    def _tell(self) -> None:
-        counts = len(self.job.plan), len(self.rows), self.failed, self.kept
-        running = tuple(self._open[number] for number in self._crew.running)
-        self.listen(Progress(*counts, running, self.engine.places, self.given_again))
+    def _tell(self, engine: Engine, crew: Crew[int, Outcome]) -> None:
+        self.given_again = crew.given_again
+        counts = len(self), len(self.rows), self.failed, self.kept
+        running = tuple(self._open[number] for number in crew.running)
+        self.listen(Progress(*counts, running, engine.places, self.given_again))
 
     def _write_tables(self) -> None:
         rows, columns = in_order(self.rows), Columns(self.job.plan, self.job.timings)
@@ -362,112 +446,6 @@ class Session:
             from aidl_lang.tools.sweeping.sheet import contact_sheet
 
             write(name, contact_sheet(Path(name).suffix.lower(), self.job.bundle.name, columns, rows))
-
-
-# --- A sweep as Python has it: an iterator of results, which is a table as well.
-
-
-class Sweep:
-    """The variants of a program. Iterating over it runs it, and yields a result for each variant as it comes;
-    a second time it yields what is known, and goes on where the first was left.
-
-    A result has `number`, `params`, `ok`, `status`, `measures`, `message`, `files` and `command`; its
-    `outcome` has the rest.
-    """
-
-    def __init__(self, job: Job, engine: tuple[str, int | None]) -> None:
-        self._job, self._engine = job, engine
-        self._session: Session | None = None
-        self._running = self._rows()
-
-    @classmethod
-    def begun(
-        cls,
-        source: SourceFile,
-        world: World | None,
-        params: Mapping[str, object],
-        asked: tuple[Options, str | None, bool],
-        settings: Settings | None,
-        *,
-        outputs: Sequence[str],
-        table: str | Path | None,
-        drawn: tuple[int, int] | None,
-        engine: tuple[str, int | None],
-        **how: Any,
-    ) -> Sweep:
-        """Returns a sweep that is about to run; `how` has fields of the `Job`. Raises AidlError."""
-        bundle, gathering, knobs = opened(source, world, settings or Settings())
-        axes = [_axis(name, values, knobs, is_drawn=drawn is not None) for name, values in params.items()]
-        rows = None if table is None else read_table(Path(table), knobs, gathering.reads)
-        plan = planned(knobs, axes, rows, drawn)
-
-        def command(variant: Variant, name: str) -> str:
-            return reproducing(source.name, plan, variant, name)
-
-        options, fallback, best_effort = asked
-        making = Making(options=options, best_effort=best_effort)
-        wanted = sorted_outputs(outputs, plan, gathering.reads, fallback)
-        return cls(Job(plan, bundle, gathering, making, wanted, command, **how), engine)
-
-    def __len__(self) -> int:
-        """The number of variants."""
-        return len(self._job.plan)
-
-    def __iter__(self) -> Iterator[Row]:
-        place = 0
-        while place < len(self._known) or next(self._running, None) is not None:
-            yield self._known[place]
-            place += 1
-
-    @property
-    def _known(self) -> list[Row]:
-        return self._session.rows if self._session is not None else []
-
-    def _rows(self) -> Generator[Row, None, None]:
-        workers: Engine = engine(*self._engine, len(self._job.plan), self._job.outputs.names)
-        self._session = Session(self._job, workers)
-        try:
-            yield from self._session
-        finally:
-            workers.close()
-
-    def close(self) -> None:
-        """Gives up what is not done. With outputs or a cache, what is done is kept."""
-        if self._session is not None:
-            self._running.close()
-
-    def __enter__(self) -> Sweep:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.close()
-
-    @property
-    def results(self) -> list[Row]:
-        """All results in the order of the variants; runs the sweep to its end."""
-        return in_order(list(self))
-
-    @property
-    def turns(self) -> list[str]:
-        """A sentence for each two results that are neighbours in one param, and of different kind."""
-        return list(turns(self.results))
-
-    @property
-    def failures(self) -> list[Row]:
-        """The results that are not `ok`."""
-        return [row for row in self.results if not row.ok]
-
-    def to_arrow(self) -> pyarrow.Table:
-        """Returns the results as a table of Arrow. Raises AidlError without the package `pyarrow`."""
-        return as_arrow(Columns(self._job.plan, self._job.timings), self.results)
-
-    def to_pandas(self) -> Any:
-        """Returns the results as a data frame of pandas. Raises AidlError without the packages."""
-        require("pandas", "a data frame", "parquet")
-        return self.to_arrow().to_pandas()
-
-    def __repr__(self) -> str:
-        return f"<aidl_lang.Sweep {len(self._known)} of {len(self)} variants>"
 
 
 def _axis(name: str, values: object, knobs: Sequence[Knob], *, is_drawn: bool) -> Axis:

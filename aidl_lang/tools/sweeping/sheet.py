@@ -126,7 +126,6 @@ def _lines(painter: Painter, words: Sequence[str], width: float, most: int, betw
 
 
 def fitted(painter: Painter, text: str, size: float, width: float) -> str:
-    """Returns a text cut to a width."""
     text = text[:300]
     while len(text) > 1 and painter.length(text, size) > width:
         text = f"{text.removesuffix('…')[:-1]}…"

@@ -5,11 +5,15 @@ from __future__ import annotations
 import io
 import math
 import re
+import struct
 import unicodedata
 from base64 import standard_b64encode
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cache
 from typing import Any, NamedTuple, TypeAlias
+
+import numpy as np
+from PIL import Image, ImageFilter
 
 from aidl_lang.common.records import record
 
@@ -45,8 +49,6 @@ def fit(width: float, height: float, screen: Screen) -> Screen:
 
 def cell_size(descriptor: int) -> tuple[int, int]:
     """Pixels of a cell of the terminal behind a file descriptor, or `CELL`."""
-    import struct
-
     try:
         import fcntl  # not on Windows
         import termios
@@ -98,9 +100,6 @@ _RUN = re.compile(r"(.)\1{3,}")
 
 def sixel(png: bytes) -> str:
     """The picture in its own pixels, with the 256 colours that suit it best."""
-    import numpy as np
-    from PIL import Image
-
     with Image.open(io.BytesIO(png)) as image:
         indexed = image.convert("RGB").quantize(_COLOURS, dither=Image.Dither.NONE)
     pixels = np.asarray(indexed)
@@ -117,8 +116,6 @@ def sixel(png: bytes) -> str:
 
 def _layers(band: Any) -> Iterator[str]:
     """Yields for each colour of a band its columns, a bit for each row."""
-    import numpy as np
-
     weights = (1 << np.arange(len(band), dtype=np.uint8))[:, None]
     for colour in np.unique(band):
         bits = ((band == colour) * weights).sum(axis=0, dtype=np.uint8)
@@ -133,8 +130,7 @@ def _layers(band: Any) -> Iterator[str]:
 # terminal that was started from another one, those of the outer terminal are still there.
 
 GRAPHICS = ("kitty", "iterm", "sixel")
-"""Protocols that take pixels; the others take characters."""
-PROTOCOLS = (*GRAPHICS, "blocks", "braille", "ascii")
+"""Protocols that take pixels; the others take characters: `blocks`, `braille` and `ascii`."""
 
 _MULTIPLEXERS = ("TMUX", "STY", "ZELLIJ")
 _MULTIPLEXED = ("tmux", "screen")
@@ -158,7 +154,7 @@ _TRUE_COLOUR = ("truecolor", "24bit")
 
 
 def protocol(environment: Mapping[str, str], encoding: str, *, is_terminal: bool, has_colour: bool) -> str:
-    """Returns the best of `PROTOCOLS` for standard output.
+    """Returns the best protocol for standard output.
 
     `has_colour` is false where colour is not wanted (NO_COLOR, TERM=dumb); escape codes are not wanted then.
     """
@@ -368,8 +364,6 @@ _DARKEST = 0.5
 
 def cells(protocol: str, png: bytes, columns: int, rows: int) -> Grid:
     """Returns the picture stretched over a grid. For braille and ASCII it is black lines on white."""
-    from PIL import Image
-
     across, down = PIXELS[protocol]
     with Image.open(io.BytesIO(png)) as image:
         small = image.convert("RGB").resize((columns * across, rows * down), Image.Resampling.BOX)
@@ -377,8 +371,6 @@ def cells(protocol: str, png: bytes, columns: int, rows: int) -> Grid:
 
 
 def _blocks(image: Any) -> Grid:
-    import numpy as np
-
     pixels = np.asarray(image).tolist()
     return [
         [
@@ -390,8 +382,6 @@ def _blocks(image: Any) -> Grid:
 
 
 def _braille(image: Any) -> Grid:
-    import numpy as np
-
     dark = _tiles(np.asarray(image.convert("L")) < _DARK, 2, 4)
     codes = (dark * np.array(_DOTS)).sum(axis=(2, 3))
     return [[Cell(chr(0x2800 + code)) for code in row] for row in codes.tolist()]
@@ -399,9 +389,6 @@ def _braille(image: Any) -> Grid:
 
 def _ascii(image: Any) -> Grid:
     """Returns for each cell the character that looks most like it."""
-    import numpy as np
-    from PIL import ImageFilter
-
     soft = image.convert("L").filter(ImageFilter.GaussianBlur(_SOFT))
     tiles = _tiles(1 - np.asarray(soft) / 255, 4, 8)
     names, shapes = _shapes()
@@ -417,8 +404,6 @@ def _tiles(pixels: Any, across: int, down: int) -> Any:
 
 @cache
 def _shapes() -> tuple[str, Any]:
-    import numpy as np
-
     y, x = np.mgrid[0.5:8, 0.5:4]
     far = np.full_like(x, np.inf)
     apart = [
@@ -430,8 +415,6 @@ def _shapes() -> tuple[str, Any]:
 
 def _distance_to(x: Any, y: Any, x0: float, y0: float, x1: float, y1: float) -> Any:
     """Returns the distance of each pixel from a stroke."""
-    import numpy as np
-
     dx, dy = x1 - x0, y1 - y0
     along = ((x - x0) * dx + (y - y0) * dy) / (dx * dx + dy * dy or 1.0)
     along = np.clip(along, 0, 1)

@@ -186,7 +186,11 @@ def test_what_was_deleted_to_silence_an_error_is_missed() -> None:
     assert compiled(silenced).status == "solved"
     ledger = told(LID, silenced)
     (loss,) = ledger.missing
-    assert (loss.kind, loss.path, loss.text) == (Kind.CONSTRAINT, "tin", "lid.right == box.right")
+    assert (loss.kind, loss.item.home, loss.item.text) == (
+        Kind.CONSTRAINT,
+        ("tin",),
+        "lid.right == box.right",
+    )
     assert loss.phrase == (
         "`lid.right == box.right` (in `tin`) is gone: as it was it conflicts with `lid.left == box.left` and"
         " `lid.width == 40`; say it in another way, or mend one of those"
@@ -358,7 +362,7 @@ def test_any_constraint_deleted_is_named_and_put_back(chosen: tuple[str, str]) -
     after = "\n".join([*lines[:number], *lines[number + 1 :]]) + "\n"
     words = lines[number].split("//")[0].strip()
     (loss,) = told(text, after).missing
-    assert loss.text == " ".join(words.split())
+    assert loss.item.text == " ".join(words.split())
     assert phrases(text, restored(after, text)) == []
 
 

@@ -7,26 +7,11 @@ from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from functools import partial
 
-from aidl_lang.checking import builtins
+from aidl_lang.checking import builtins, types
 from aidl_lang.checking.builtins import EDITS
 from aidl_lang.checking.facts import Fact, body_of, of_symbol
 from aidl_lang.checking.members import member_of
 from aidl_lang.checking.symbols import Symbol, SymbolKind, SymbolScope
-from aidl_lang.checking.types import (
-    AnyType,
-    BoxType,
-    GeometryType,
-    ListType,
-    NumberType,
-    PointType,
-    RecordType,
-    Signature,
-    StructureType,
-    TextType,
-    TruthType,
-    Type,
-    accepts,
-)
 from aidl_lang.checking.units import ANGLE
 from aidl_lang.parser import standing_before
 from aidl_lang.syntax import ast
@@ -37,7 +22,7 @@ from aidl_lang.tools.ide.completion.drafts import MOST, Completion, Draft, Files
 from aidl_lang.tools.ide.completion.names import constraints, forms, importing, thing_kind
 from aidl_lang.tools.ide.references import parameter_node
 from aidl_lang.tools.ide.signatures import Reading, fenced, is_public, of_parameter, of_public
-from aidl_lang.tools.ide.site import EditSite, Spot, Where, around, site_at, spot_at
+from aidl_lang.tools.ide.site import EditSite, Spot, around, site_at, spot_at
 from aidl_lang.tools.ide.workspace import View, look
 from aidl_lang.tools.reference.collect import reference
 from aidl_lang.tools.reference.signatures import parts, things
@@ -63,7 +48,7 @@ def members(context: Context, value: ast.Expression) -> Iterator[Draft]:
         yield from _of_file(context, symbol.scope.spaces.get(symbol.name))
         return
     fact = context.view.program.inference.fact(value)
-    if isinstance(value, ast.Number) or isinstance(fact.type, NumberType):
+    if isinstance(value, ast.Number) or isinstance(fact.type, types.NumberType):
         return
     listed: set[str] = set()
     for tier, name, describe in _names(context, fact):
@@ -90,24 +75,24 @@ _Named = Iterator[tuple[float, str, Symbol | None]]
 
 def _names(context: Context, fact: Fact) -> _Named:
     match fact.type:
-        case StructureType() if fact.of is not None:
+        case types.StructureType() if fact.of is not None:
             for name, symbol in context.view.resolution.scope_of(fact.of).values.items():
                 if symbol.kind in _SEEN:
                     is_late = symbol.kind in (SymbolKind.LET, SymbolKind.ARGUMENT)
                     yield _MEMBERS + 0.5 * is_late, name, symbol
             yield from _plain((*builtins.BOX, "bb"), _BOX)
             yield from _plain(builtins.STRUCTURE, _BOX + 0.5)
-        case GeometryType(kind):
+        case types.GeometryType(kind):
             if fact.of is not None:
                 yield from _of_shape(context, fact.of)
             else:
                 yield from _plain(builtins.PRIMITIVE.get(kind, {}), _FIELDS)
             yield from _plain((*builtins.BOX, "bb"), _BOX)
-        case PointType():
+        case types.PointType():
             yield from _plain(("x", "y"), _FIELDS)
-        case BoxType() | StructureType():
+        case types.BoxType() | types.StructureType():
             yield from _plain(builtins.BOX, _FIELDS)
-        case ListType():
+        case types.ListType():
             yield from _plain(builtins.PATTERN.get(fact.pattern, {}), _MEMBERS)
             yield from _names(context, fact.element())
             yield from _plain((*builtins.BOX, "bb"), _BOX)
@@ -135,7 +120,7 @@ def _member(context: Context, base: Fact, name: str, tier: float, symbol: Symbol
     node = ast.Member(ast.Name(name, span=here), ast.Identifier(name, span=here), span=here)
     fact = member_of(context.view.program.inference, base, node)
     if context.wanted != CONDITION and context.wanted.distance(fact.type) is None:
-        tier += _UNFIT if isinstance(fact.type, NumberType | PointType) else 0.5
+        tier += _UNFIT if isinstance(fact.type, types.NumberType | types.PointType) else 0.5
     if symbol is None:
         described = partial(fenced, f"{name}: {fact.type}")
         return Draft(name, "field", tier, detail=str(fact.type), describe=described)
@@ -146,7 +131,7 @@ def _member(context: Context, base: Fact, name: str, tier: float, symbol: Symbol
 
 def _methods(context: Context, fact: Fact) -> Iterator[Draft]:
     """Yields `a.above(…)`: constraints among constraints, functions elsewhere."""
-    if isinstance(fact.type, AnyType | RecordType):
+    if isinstance(fact.type, types.AnyType | types.RecordType):
         return
     words = vocabulary()
     holders = ast.ExpressionStatement | ast.Constrain | ast.Block | ast.Prefer | ast.Binary
@@ -164,14 +149,14 @@ def _methods(context: Context, fact: Fact) -> Iterator[Draft]:
         yield names.of_call(name, "method", tier + 0.05 * (name not in own), text, signatures)
 
 
-def _first_fits(fact: Fact, signatures: list[Signature], name: str) -> float | None:
+def _first_fits(fact: Fact, signatures: list[types.Signature], name: str) -> float | None:
     """Returns how well a callable's first parameter takes a thing; None if it does not."""
     if name in forms() and all(s.standard for s in signatures):
         pairs = (form.pairs for form in forms()[name])
         kind = thing_kind(fact)
         return min((len(p) / 100 for p in pairs if any(first == kind for first, _ in p)), default=None)
     firsts = [s.parameters[0][1] for s in signatures if s.parameters]
-    distances = [d for first in firsts if (d := accepts(first, fact.type)) is not None]
+    distances = [d for first in firsts if (d := types.accepts(first, fact.type)) is not None]
     return min((d for d in distances if d < 3), default=None)
 
 
@@ -211,14 +196,16 @@ def named_arguments(context: Context) -> Iterator[Draft]:
             yield _argument(context, reading.signature, name, kind, tier)
 
 
-def _open(reading: Reading, number: int) -> list[tuple[str, Type, bool]]:
+def _open(reading: Reading, number: int) -> list[tuple[str, types.Type, bool]]:
     taken = {name for n, name in enumerate(reading.taken) if n != number}
     node = reading.signature.node
     related = {p.name.text for p in things(node)} if isinstance(node, ast.ConstraintDefinition) else set()
     return [p for p in reading.signature.parameters if p[0] not in taken and p[0] not in related]
 
 
-def _argument(context: Context, signature: Signature, name: str, kind: Type, tier: float) -> Draft:
+def _argument(
+    context: Context, signature: types.Signature, name: str, kind: types.Type, tier: float
+) -> Draft:
     node = parameter_node(signature, name)
     default = node.default.span.one_line if node is not None and node.default is not None else ""
     is_named = _NAMED.match(context.site.following) is not None
@@ -228,23 +215,23 @@ def _argument(context: Context, signature: Signature, name: str, kind: Type, tie
     return Draft(f"{name}:", "argument", tier, text, detail, not is_named, describe=described)
 
 
-def _proposed(signature: Signature, name: str, kind: Type, default: str) -> str:
+def _proposed(signature: types.Signature, name: str, kind: types.Type, default: str) -> str:
     """Returns a snippet placeholder with a value that the parameter takes."""
-    if isinstance(kind, TextType) and (words := drafts.words_of(signature, name)):
+    if isinstance(kind, types.TextType) and (words := drafts.words_of(signature, name)):
         listed = [word if word.isidentifier() else f'"{word}"' for word in words if word != "free"]
         return f"${{1|{','.join(listed)}|}}"
     if default and len(default) < _LONGEST_DEFAULT:
         return drafts.stop(1, default)
     match kind:
-        case NumberType(dimension, whole):
+        case types.NumberType(dimension, whole):
             return drafts.stop(1, "45deg" if dimension == ANGLE else "3" if whole else "10")
-        case PointType():
+        case types.PointType():
             return "(${1:0}, ${2:0})"
-        case TextType():
+        case types.TextType():
             return '"${1:text}"'
-        case TruthType():
+        case types.TruthType():
             return "${1|true,false|}"
-        case ListType():
+        case types.ListType():
             return f"[{drafts.stop(1, name)}]"
         case _:
             return drafts.stop(1, name)
@@ -381,11 +368,11 @@ def complete(view: View, offset: int, files: Files | None = None) -> list[Comple
     """Returns the likeliest `MOST` completions at an offset. `files` lists what may be imported."""
     spot = spot_at(view, offset)
     match spot.where:
-        case Where.COMMENT:
+        case "comment":
             return []
-        case Where.STRING:
+        case "string":
             found = _in_string(view, spot, files)
-        case Where.NUMBER:
+        case "number":
             is_behind = spot.offset >= spot.start and (spot.before is None or spot.before.kind != ".")
             found = drafts.units(_of_literal(view, spot)) if is_behind else iter(())
         case _:
@@ -410,7 +397,7 @@ def _of_literal(view: View, spot: Spot) -> Context | None:
     """Returns the context around a string, closed if it is not, or around a number without its unit."""
     assert spot.token is not None
     start, text = spot.token.start, view.source.text
-    if spot.where is Where.STRING:
+    if spot.where == "string":
         quote = text[start]
         shown = view if spot.token.kind == "STRING" else None
         filled = text[:start] + quote * 2 + text[spot.token.end :]
@@ -421,7 +408,7 @@ def _of_literal(view: View, spot: Spot) -> Context | None:
     path = tuple(around(shown.module, start))
     if not isinstance(path[-1], ast.Number | ast.String):
         return None
-    here = Spot(Where.CODE, start, start, start, spot.before)
+    here = Spot("code", start, start, start, spot.before)
     return context_of(EditSite(view, here, standing_before(view.source, start), shown, path))
 
 
@@ -498,7 +485,7 @@ def _value(context: Context) -> Iterator[Draft]:
     if is_demand:
         yield from constraints(context)
     yield from names.values(context)
-    if context.wanted.types != (TextType(),):
+    if context.wanted.kinds != (types.TextType(),):
         yield from names.calls(context)
     yield from truths(context.site)
 

@@ -7,25 +7,10 @@ from enum import Enum
 from functools import cached_property
 from typing import TypeVar
 
+from aidl_lang.checking import types
 from aidl_lang.checking.builtins import CLIP, COPYING, DERIVING, MATH, PATTERNS, STACKING
 from aidl_lang.checking.facts import Fact, ReadPlace, of_symbol
 from aidl_lang.checking.symbols import UNKNOWNS, Symbol, SymbolKind, SymbolScope
-from aidl_lang.checking.types import (
-    ANY,
-    AnyType,
-    GeometryType,
-    ListType,
-    NumberType,
-    PointType,
-    RangeType,
-    Signature,
-    StructureType,
-    TextType,
-    TruthType,
-    Type,
-    accepts,
-    parameter_type,
-)
 from aidl_lang.checking.units import ANGLE, LENGTH, PLAIN
 from aidl_lang.common.records import record
 from aidl_lang.syntax import ast
@@ -35,12 +20,12 @@ from aidl_lang.tools.ide.workspace import View
 from aidl_lang.tools.vocabulary import vocabulary
 
 T = TypeVar("T")
-_ATTRIBUTES: dict[str, Type] = {
-    **dict.fromkeys(("thickness", "depth", "elevation", "stroke", "dash", "halo"), NumberType(LENGTH)),
-    **dict.fromkeys(("opacity", "quantity"), NumberType(PLAIN)),
-    "shadow": NumberType(LENGTH),
-    **dict.fromkeys(STACKING, StructureType()),
-    CLIP: GeometryType(""),
+_ATTRIBUTES: dict[str, types.Type] = {
+    **dict.fromkeys(("thickness", "depth", "elevation", "stroke", "dash", "halo"), types.NumberType(LENGTH)),
+    **dict.fromkeys(("opacity", "quantity"), types.NumberType(PLAIN)),
+    "shadow": types.NumberType(LENGTH),
+    **dict.fromkeys(STACKING, types.StructureType()),
+    CLIP: types.GeometryType(""),
 }
 
 
@@ -117,7 +102,6 @@ class Context:
         return argument is not None and argument.name is not None
 
     def innermost(self, kind: type[T]) -> T | None:
-        """Returns the innermost node of a kind around the place."""
         return next((node for node in reversed(self.path) if isinstance(node, kind)), None)
 
     @cached_property
@@ -134,11 +118,11 @@ class Context:
                 return self._of_argument() if isinstance(above, ast.Argument) else self._wanted(path[:-1])
             case ast.Binary(operator="+" | "-", left=left, right=right):
                 other = self.view.program.inference.fact(right if node is left else left).type
-                return _alike(other) if not isinstance(other, AnyType) else self._wanted(path[:-1])
+                return _alike(other) if not isinstance(other, types.AnyType) else self._wanted(path[:-1])
             case ast.Binary(operator="and" | "or") | ast.Unary():
                 return CONDITION
             case ast.Binary():
-                return Wanted((_NUMBER, NumberType(None)))
+                return Wanted((_NUMBER, types.NumberType(None)))
             case ast.Comparison(operands=operands):
                 return self._compared(node, operands)
             case ast.Equation(left=left, right=right):
@@ -156,7 +140,7 @@ class Context:
 
     def _compared(self, node: ast.Node, operands: tuple[ast.Expression, ...]) -> Wanted:
         facts = [self.view.program.inference.fact(o) for o in operands if o is not node]
-        known = next((f.type for f in facts if not isinstance(f.type, AnyType)), None)
+        known = next((f.type for f in facts if not isinstance(f.type, types.AnyType)), None)
         return _alike(known) if known is not None else Wanted()
 
     def _of_argument(self) -> Wanted:
@@ -164,17 +148,19 @@ class Context:
             attribute = self.innermost(ast.Attribute)
             if attribute is None:
                 return Wanted()
-            return Wanted((_ATTRIBUTES.get(attribute.name.text, TextType()),), f"@{attribute.name.text}")
-        kinds: dict[Type, None] = {}
+            return Wanted(
+                (_ATTRIBUTES.get(attribute.name.text, types.TextType()),), f"@{attribute.name.text}"
+            )
+        kinds: dict[types.Type, None] = {}
         name = ""
         for reading, taken in self.filled:
             if (kind := type_of(reading.signature, taken)) is None:
                 continue
             name = name or taken
-            if isinstance(kind, ListType) and not self.is_named:
+            if isinstance(kind, types.ListType) and not self.is_named:
                 kinds[kind.element] = None
             kinds[kind] = None
-        return Wanted(() if ANY in kinds and len(kinds) == 1 else tuple(kinds), name)
+        return Wanted(() if types.ANY in kinds and len(kinds) == 1 else tuple(kinds), name)
 
     @cached_property
     def values(self) -> list[KnownName]:
@@ -228,7 +214,7 @@ class Context:
             case Use.DERIVING:
                 return all(p.holder in self.scope.homes for p in reads)
 
-    def called(self, name: str) -> list[Signature]:
+    def called(self, name: str) -> list[types.Signature]:
         """Returns the definitions that a call of a name may mean here; none for another name."""
         found = self.scope.called(name)
         return found[1] if found is not None else []
@@ -276,8 +262,8 @@ _DEMANDS = ast.Constrain | ast.ExpressionStatement | ast.Prefer | ast.Equation
 _STATEMENTS = ast.Allowing | ast.Structure | ast.Assign | ast.Parameter
 
 
-_WHOLE = NumberType(None, whole=True)
-_NUMBER = NumberType(LENGTH)
+_WHOLE = types.NumberType(None, whole=True)
+_NUMBER = types.NumberType(LENGTH)
 _PERHAPS = 3
 """Distance of an unknown type from the wanted one."""
 
@@ -286,18 +272,18 @@ _PERHAPS = 3
 class Wanted:
     """The wanted types, likelier first; empty for any. `name` is the parameter to fill."""
 
-    types: tuple[Type, ...] = ()
+    kinds: tuple[types.Type, ...] = ()
     name: str = ""
 
-    def distance(self, given: Type) -> int | None:
+    def distance(self, given: types.Type) -> int | None:
         """Returns how far a type is from the wanted ones; None if it does not fit, as an unknown one may."""
-        if isinstance(given, AnyType):
+        if isinstance(given, types.AnyType):
             return _PERHAPS
-        found = [d for kind in self.types if (d := accepts(kind, given)) is not None]
-        return min(found) if found else None if self.types else 0
+        found = [d for kind in self.kinds if (d := types.accepts(kind, given)) is not None]
+        return min(found) if found else None if self.kinds else 0
 
 
-CONDITION = Wanted((TruthType(),))
+CONDITION = Wanted((types.TruthType(),))
 """The type of a condition, which often begins with a value: `a.radius >= 3`."""
 
 
@@ -308,15 +294,15 @@ def _is_run_through(node: ast.Node, above: ast.Node) -> bool:
 def _of_place(node: ast.Node, above: ast.Node, path: Sequence[ast.Node]) -> Wanted:
     match above:
         case ast.Point():
-            return Wanted((NumberType(LENGTH),))
+            return Wanted((types.NumberType(LENGTH),))
         case ast.Placement(at=at):
-            return Wanted((PointType() if node is at else NumberType(ANGLE),))
+            return Wanted((types.PointType() if node is at else types.NumberType(ANGLE),))
         case ast.Membership(container=container) | ast.Param(domain=container) if node is container:
-            return Wanted((RangeType(), ListType(ANY)))
+            return Wanted((types.RangeType(), types.ListType(types.ANY)))
         case ast.Range() | ast.Membership():
             return Wanted((_NUMBER, _WHOLE))
         case ast.For() | ast.ForArguments() | ast.Comprehension() if _is_run_through(node, above):
-            return Wanted((ListType(ANY), RangeType()))
+            return Wanted((types.ListType(types.ANY), types.RangeType()))
         case ast.Index() | ast.Structure() | ast.Assign() if (
             node is above.index if isinstance(above, ast.Index) else node in above.indices
         ):
@@ -324,30 +310,30 @@ def _of_place(node: ast.Node, above: ast.Node, path: Sequence[ast.Node]) -> Want
         case ast.If(test=test) | ast.Assert(test=test) | ast.Prefer(value=test) if node is test:
             return CONDITION
         case ast.Assert():
-            return Wanted((TextType(),))
+            return Wanted((types.TextType(),))
         case ast.Prefer():
-            return Wanted((NumberType(None),))
+            return Wanted((types.NumberType(None),))
         case ast.ExpressionStatement():
             return CONDITION
-        case ast.Parameter() if (kind := parameter_type(above)) is not None:
+        case ast.Parameter() if (kind := types.parameter_type(above)) is not None:
             return Wanted((kind,))
         case _:
             return Wanted()
 
 
-def _alike(kind: Type) -> Wanted:
+def _alike(kind: types.Type) -> Wanted:
     match kind:
-        case NumberType(dimension):
-            return Wanted((NumberType(dimension), NumberType(None)))
-        case GeometryType("line"):
-            return Wanted((NumberType(LENGTH), kind))
+        case types.NumberType(dimension):
+            return Wanted((types.NumberType(dimension), types.NumberType(None)))
+        case types.GeometryType("line"):
+            return Wanted((types.NumberType(LENGTH), kind))
         case _:
             return Wanted((kind,))
 
 
 def _member_of(wanted: Wanted) -> Wanted:
-    elements = [kind.element for kind in wanted.types if isinstance(kind, ListType)]
-    known = tuple(kind for kind in elements if not isinstance(kind, AnyType))
-    if not elements and PointType() in wanted.types:
-        known = (NumberType(LENGTH),)
+    elements = [kind.element for kind in wanted.kinds if isinstance(kind, types.ListType)]
+    known = tuple(kind for kind in elements if not isinstance(kind, types.AnyType))
+    if not elements and types.PointType() in wanted.kinds:
+        known = (types.NumberType(LENGTH),)
     return Wanted(known, wanted.name)

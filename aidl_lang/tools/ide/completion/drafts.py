@@ -111,7 +111,7 @@ _PLAIN_TYPES = ("number", "integer", "length", "angle", "point", "text", "bool",
 
 def units(context: Context | None) -> Iterator[Draft]:
     """Yields units after a number, those of the wanted dimension first."""
-    wanted = context.wanted.types if context is not None else ()
+    wanted = context.wanted.kinds if context is not None else ()
     dimensions = [k.dimension for k in wanted if isinstance(k, NumberType) and k.dimension is not None]
     for number, (unit, (factor, dimension)) in enumerate(UNITS.items()):
         fits = dimension in dimensions

@@ -108,7 +108,7 @@ def calls(context: Context) -> Iterator[Draft]:
 
 
 def _takes_things(context: Context) -> bool:
-    kinds = context.wanted.types
+    kinds = context.wanted.kinds
     takes = any(isinstance(kind, GeometryType | StructureType | ListType | AnyType) for kind in kinds)
     return takes and context.use is Use.GEOMETRY if context.call is None else takes or not kinds
 
@@ -225,7 +225,6 @@ def importing(context: Context, files: Files | None) -> Iterator[Draft]:
 
 @lru_cache(maxsize=128)
 def definitions(name: str, text: str) -> tuple[ast.Callable, ...]:
-    """Returns the callable definitions of a file."""
     statements = parse(SourceFile(name, text)).module.statements
     return tuple(s for s in statements if isinstance(s, ast.Callable) and is_definition(s))
 

@@ -73,8 +73,10 @@ def turned(view: View, grip: str, to: Vec, step: float) -> tuple[View, Vec, tupl
     at = _places(shown).get(grip)
     if at is None:
         raise CannotError("the program does not solve with the param turned that far")
+    known = ((tries.knobs[path], value) for path, value in values.items())
+    found = ((knob, _declaration(view, knob), value) for knob, value in known)
     try:
-        edits = tuple(edit for path, value in values.items() for edit in _set(view, path, value))
+        edits = tuple(edit_at(knob, node, value) for knob, node, value in found if node is not None)
     except RefusalError as refused:
         raise CannotError(refused.diagnostics[0].message) from None
     return shown, at, edits
@@ -106,14 +108,6 @@ def _declaration(view: View, knob: Knob) -> ast.Param | None:
         return None
     number = node.value.operand if isinstance(node.value, ast.Unary) else node.value
     return node if isinstance(number, ast.Number) else None
-
-
-def _set(view: View, path: str, value: float) -> Iterator[Edit]:
-    """Yields the edits that set a param. Raises RefusalError for a value that does not fit."""
-    for knob in view.knobs:
-        declared = _declaration(view, knob)
-        if knob.path == path and declared is not None:
-            yield edit_at(knob, declared, value)
 
 
 def _nudge(knob: Knob) -> float:
@@ -149,7 +143,6 @@ class _Tries:
         self._places: dict[Values, Mapping[str, Vec]] = {}
 
     def run(self, values: Mapping[str, float]) -> View:
-        """Returns the view with these values, drawn."""
         key = frozenset(values.items())
         if key not in self._shown:
             shown = run(self.view, self.view, params={**(self.view.params or {}), **values}, settings=hasty())
@@ -305,10 +298,10 @@ class _Hold(Solved):
     """What can be taken hold of in a solved view, and the numbers that move it."""
 
     view: View
+    _tried: dict[tuple[Vec, ...], bool] = field(default_factory=dict)
 
     @cached_property
     def editable(self) -> list[Guess]:
-        """The numbers that dragging may write."""
         return [guess for guess in guesses(self.view) if not guess.is_shared]
 
     @cached_property
@@ -350,10 +343,6 @@ class _Hold(Solved):
         if directions not in self._tried:
             self._tried[directions] = self._can_slide(directions)
         return self._tried[directions]
-
-    @cached_property
-    def _tried(self) -> dict[tuple[Vec, ...], bool]:
-        return {}
 
     def _can_slide(self, directions: tuple[Vec, ...]) -> bool:
         """Tries it with one of the points that move along some directions: all of them move alike."""

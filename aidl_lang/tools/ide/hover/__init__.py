@@ -13,12 +13,7 @@ from aidl_lang.common.source import Span
 from aidl_lang.syntax import ast
 from aidl_lang.syntax.tables import Token, kind_of
 from aidl_lang.tools.ide.guesses import guesses
-from aidl_lang.tools.ide.hover.solved_values import (
-    constraint_lines,
-    lines,
-    number_text,
-    solved_of,
-)
+from aidl_lang.tools.ide.hover import solved_values
 from aidl_lang.tools.ide.references import Mention, chosen, mention_at, parameter_node
 from aidl_lang.tools.ide.signatures import (
     fenced,
@@ -32,7 +27,7 @@ from aidl_lang.tools.ide.signatures import (
     of_public,
     type_of,
 )
-from aidl_lang.tools.ide.site import Where, around, spot_at, token_at
+from aidl_lang.tools.ide.site import around, spot_at, token_at
 from aidl_lang.tools.ide.workspace import Solved, View
 from aidl_lang.tools.reference.collect import Entry, reference
 from aidl_lang.tools.vocabulary import vocabulary
@@ -78,11 +73,11 @@ def _compared(view: View, token: Token) -> str:
     node = path[-1]
     if not isinstance(node, ast.Comparison):
         return ""
-    solved = solved_of(view)
+    solved = solved_values.solved_of(view)
     if solved is None:
         return not_solved(view)
     sides = [(side.span.one_line, solved.values(side, path)) for side in node.operands]
-    return joined([stated_at(view, node, path), listed(lines(solved, *sides))])
+    return joined([stated_at(view, node, path), listed(solved_values.lines(solved, *sides))])
 
 
 def of_attribute(view: View, offset: int) -> Hover | None:
@@ -108,12 +103,12 @@ def of_number(view: View, start: int) -> Hover | None:
     blocks = []
     if node.unit is not None:
         factor, dimension = UNITS[node.unit]
-        worth = number_text(node.value * factor, dimension)
+        worth = solved_values.number_text(node.value * factor, dimension)
         blocks.append(f"`{node.span.text}` = {worth}" if factor != 1.0 else f"{dimension}: {worth}")
     for guess in guesses(view):
         if guess.span.start <= start < guess.span.end and guess.solved is not None:
             what = "kept" if guess.is_kept else "a first guess"
-            became = number_text(guess.solved, None) + guess.behind
+            became = solved_values.number_text(guess.solved, None) + guess.behind
             many = f" and {len(guess.uses) - 1} more" if len(guess.uses) > 1 else ""
             change = f"solved to {became}" if guess.is_off(guess.solved) else f"stays {became}"
             blocks.append(f"`{guess.path}`{many}: {what}, {change}")
@@ -143,11 +138,11 @@ def failed(solved: Solved) -> str:
 
 def stated_at(view: View, node: ast.Node, path: Sequence[ast.Node]) -> str:
     """Tells how well the constraint holds whose head is a call or a sign."""
-    solved = solved_of(view)
+    solved = solved_values.solved_of(view)
     if solved is None:
         return ""
     for each in reversed(path):
-        if isinstance(each, _MAY_HOLD) and (told := constraint_lines(solved, each.span)):
+        if isinstance(each, _MAY_HOLD) and (told := solved_values.constraint_lines(solved, each.span)):
             return joined([*told, failed(solved)])
         if isinstance(each, ast.Block):
             break
@@ -162,7 +157,7 @@ _VALUES = frozenset(SymbolKind) - {
 
 
 def hover(view: View, offset: int) -> Hover | None:
-    if spot_at(view, offset).where in (Where.COMMENT, Where.STRING):
+    if spot_at(view, offset).where in ("comment", "string"):
         return None
     token = token_at(view, offset)
     if token is not None and token.kind == "NUMBER":
@@ -214,7 +209,7 @@ def _doc(symbol: Symbol) -> str:
 
 
 def _values(view: View, mention: Mention, path: Sequence[ast.Node]) -> str:
-    solved = solved_of(view)
+    solved = solved_values.solved_of(view)
     if solved is None:
         return not_solved(view)
     node = mention.node
@@ -225,7 +220,7 @@ def _values(view: View, mention: Mention, path: Sequence[ast.Node]) -> str:
     found = solved.values(node, _body_path(mention, path))
     if mention.symbol.kind is SymbolKind.LOOP:
         found = [replace(each, label="") for each in found]  # it would repeat the value
-    told = lines(solved, (node.span.one_line, found))
+    told = solved_values.lines(solved, (node.span.one_line, found))
     if isinstance(mention.symbol.node, ast.Param):
         told = [line.replace(", exact (param)", ", param") for line in told]
     return joined([listed(told), _range(mention.symbol), failed(solved)])
@@ -276,7 +271,7 @@ def _of_named_argument(view: View, argument: ast.Argument, path: Sequence[ast.No
 
 
 def _given(view: View, argument: ast.Argument, path: Sequence[ast.Node]) -> str:
-    solved = solved_of(view)
+    solved = solved_values.solved_of(view)
     made = next((n for n in reversed(path) if isinstance(n, ast.Assign)), None)
     if solved is None or made is None or argument.name is None:
         return ""
@@ -285,5 +280,5 @@ def _given(view: View, argument: ast.Argument, path: Sequence[ast.Node]) -> str:
     name = ast.Name(made.name.text, span=made.name.span)
     field = ast.Member(name, argument.name, span=argument.name.span)
     found = solved.values(field, path[: path.index(made)])
-    told = lines(solved, (f"{made.name.text}.{argument.name.text}", found))
+    told = solved_values.lines(solved, (f"{made.name.text}.{argument.name.text}", found))
     return joined([listed(told), failed(solved)])

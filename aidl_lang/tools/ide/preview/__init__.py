@@ -28,7 +28,6 @@ from aidl_lang.tools.ide.dragging.mobility import grips, is_somewhere
 from aidl_lang.tools.ide.preview.elements import (
     FREEDOM,
     LAYERS,
-    Arrow,
     DrawnElement,
     Elements,
     Preview,
@@ -66,7 +65,6 @@ _SLOW = 1e-3
 
 
 def ways(solved: Solved, elements: Elements) -> Iterator[Way]:
-    """Yields the remaining motions of a solved model."""
     motions = solved.model.motions[:MOST]
     if not motions:
         return
@@ -183,11 +181,10 @@ class _Thing:
 
     @property
     def is_turning(self) -> bool:
-        """True if it turns rather than shifts."""
         reach = math.hypot(self.box[2] - self.box[0], self.box[3] - self.box[1]) / 2
         return abs(self.spin) * reach > math.hypot(*self.velocity)
 
-    def arrows(self, kind: str, slow: float) -> Iterator[Arrow]:
+    def arrows(self, kind: str, slow: float) -> Iterator[Mapping[str, Vec]]:
         """Yields an arrow for a slide; for growth, some outwards. Points slower than `slow` stand still."""
         if kind == "turn" or (kind == "together" and self.is_turning):
             return
@@ -224,10 +221,10 @@ class _Thing:
         sweep = math.copysign(sweep, spin)
         yield Turn(pole, radius, towards - sweep / 2, sweep)
 
-    def _arrow(self, at: Vec, velocity: Vec) -> Arrow:
+    def _arrow(self, at: Vec, velocity: Vec) -> Mapping[str, Vec]:
         speed = math.hypot(*velocity)
         length = LENGTH * self.size / speed
-        return Arrow(at, (at[0] + length * velocity[0], at[1] + length * velocity[1]))
+        return {"from": at, "to": (at[0] + length * velocity[0], at[1] + length * velocity[1])}
 
 
 def _things(flow: _Flow, motion: Motion, elements: Elements) -> Iterator[_Thing]:

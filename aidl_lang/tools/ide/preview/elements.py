@@ -6,12 +6,13 @@ import math
 import re
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import fields, is_dataclass, replace
+from dataclasses import fields, is_dataclass
+from functools import cache
 from pathlib import Path
 from typing import Any, TypeAlias
 
 from aidl_lang.building.model import Knob
-from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix
+from aidl_lang.common.diagnostics import Diagnostic, Edit
 from aidl_lang.common.prose import rounded, short
 from aidl_lang.common.records import record
 from aidl_lang.common.source import SourceFile, Span
@@ -78,7 +79,9 @@ class Problem:
     span: Span | None
     elements: tuple[int, ...]
     points: tuple[Vec, ...]
-    fixes: tuple[Fix, ...]
+    fixes: int
+    titles: tuple[str, ...]
+    """of its fixes"""
 
 
 @record()
@@ -98,12 +101,6 @@ class Conflict:
 
 
 @record()
-class Arrow:
-    start: Vec
-    end: Vec
-
-
-@record()
 class Turn:
     """An arc about `center`; angles in degrees, counter-clockwise."""
 
@@ -115,11 +112,11 @@ class Turn:
 
 @record()
 class Way:
-    """A remaining motion of some elements: in words, and drawn."""
+    """A remaining motion of some elements: in words, and drawn; an arrow has its ends `from` and `to`."""
 
     words: str
     elements: tuple[int, ...]
-    arrows: tuple[Arrow, ...]
+    arrows: tuple[Mapping[str, Vec], ...]
     turns: tuple[Turn, ...]
 
 
@@ -158,8 +155,8 @@ class Writer:
 
     def __init__(self, view: View, uri_of: Callable[[Path], str] = Path.as_uri) -> None:
         self._view, self._uri_of = view, uri_of
-        self._positions: dict[SourceFile, Positions] = {}
-        self._uris: dict[SourceFile, str | None] = {}
+        self._positions = cache(lambda source: Positions(source.text))
+        self._uri = cache(self._found)
 
     def preview(self, preview: Preview, version: int) -> Json:
         """Returns the preview; numbers without a value are null."""
@@ -175,21 +172,14 @@ class Writer:
         return {"range": self.range(span), "uri": uri}
 
     def range(self, span: Span) -> Json:
-        positions = self.positions(span.source)
+        positions = self._positions(span.source)
         ends = (positions.position(offset) for offset in (span.start, span.end))
         start, end = ({"line": line, "character": character} for line, character in ends)
         return {"start": start, "end": end}
 
-    def positions(self, source: SourceFile) -> Positions:
-        if source not in self._positions:
-            self._positions[source] = Positions(source.text)
-        return self._positions[source]
-
-    def _uri(self, source: SourceFile) -> str | None:
-        if source not in self._uris:
-            path = None if self._view.is_library(source) else self._view.file(source)
-            self._uris[source] = None if path is None else self._uri_of(path)
-        return self._uris[source]
+    def _found(self, source: SourceFile) -> str | None:
+        path = None if self._view.is_library(source) else self._view.file(source)
+        return None if path is None else self._uri_of(path)
 
     def _fields(self, made: Any) -> Json:
         """Returns what a record says, by the names of its fields; its span as range and file."""
@@ -200,19 +190,9 @@ class Writer:
         return said
 
     def _json(self, value: Any) -> Any:
-        match value:
-            case tuple():
-                return [self._json(each) for each in value]
-            case Arrow(start, end):
-                return {"from": start, "to": end}
-            case Problem(fixes=fixes):
-                return {
-                    **self._fields(replace(value, fixes=())),
-                    "fixes": len(fixes),
-                    "titles": [fix.title for fix in fixes],
-                }
-            case _:
-                return self._fields(value) if is_dataclass(value) else value
+        if isinstance(value, tuple):
+            return [self._json(each) for each in value]
+        return self._fields(value) if is_dataclass(value) else value
 
 
 # --- Converts places in the drawn program to places in the present text, which may be a later one.
@@ -338,13 +318,10 @@ def _of_part(
     yield DrawnElement(Element(part.path, "geometry", part.type, span, about), part, owner)
     for inner in parts:
         place = places.now(inner.span)
-        if place is None or (span is not None and _is_value_of(place, span)):
+        is_in_span = place and span and place.source is span.source and span.start <= place.start
+        if place is None or (span is not None and is_in_span and place.end == span.end):
             place = span  # the statement, in place of the call in it
         yield from _of_part(inner, owner, places, place, inner.parts)
-
-
-def _is_value_of(span: Span, statement: Span) -> bool:
-    return span.source is statement.source and statement.start <= span.start and span.end == statement.end
 
 
 def curves_of(geometry: SolvedGeometry) -> Iterator[Piece]:
@@ -517,15 +494,17 @@ def problems(
     """Yields the diagnostics with elements and points; of values that are only tried none has a fix."""
     finder = _Finder(view, elements)
     for found in (*view.diagnostics, *painting):
+        has_fix = found.fix is not None and not tried
         yield Problem(
             found.severity.value,
             found.code,
             found.message,
-            () if tried and found.fix is not None else found.hints,
+            found.hints if found.fix is None or has_fix else (),
             found.span,
             tuple(finder.about(found)),
             tuple(p for p in found.points if all(map(math.isfinite, p))),
-            (found.fix,) if found.fix is not None and not tried else (),
+            int(has_fix),
+            (found.fix.title,) if found.fix is not None and has_fix else (),
         )
 
 

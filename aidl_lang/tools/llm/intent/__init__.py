@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Collection, Iterator, Sequence
 from dataclasses import replace
 
-from aidl_lang.common.prose import counted, listed
+from aidl_lang.common.prose import counted, listed, shortened
 from aidl_lang.common.records import record
 from aidl_lang.common.source import SourceFile
 from aidl_lang.common.world import World
@@ -46,16 +46,6 @@ class Loss:
     def is_doubtful(self) -> bool:
         """True if it may well be meant: asking for it once is enough."""
         return self.fate is Fate.FEWER
-
-    @property
-    def path(self) -> str:
-        """The dotted path of the structure that held it; "" for the outermost."""
-        return dotted(self.item.home)
-
-    @property
-    def text(self) -> str:
-        """The author's words, on one line; for a structure its name."""
-        return self.item.text
 
     @property
     def phrase(self) -> str:
@@ -100,7 +90,7 @@ def request(losses: Sequence[Loss]) -> str:
 
 def quoted(text: str) -> str:
     """Returns a statement between backticks, shortened."""
-    return f"`{text if len(text) <= _QUOTED else text[: _QUOTED - 1] + '…'}`"
+    return f"`{shortened(text, _QUOTED)}`"
 
 
 def named(item: Item, inventory: Inventory) -> str:
@@ -222,7 +212,6 @@ class Ledger:
         return _Restoring(self, prober, source).run({k.item for k in known if k.finding.state in settled})
 
     def inventory(self, source: SourceFile, compiled: Compiled | None) -> Inventory:
-        """Returns the intents of a program."""
         program, found = front(source, self._world, self._settings)
         if compiled is None:
             return inventory(program.resolution, found)

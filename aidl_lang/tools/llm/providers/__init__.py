@@ -19,6 +19,7 @@ from typing import IO, Protocol
 from urllib.parse import urlsplit
 
 from aidl_lang.common.diagnostics import has_errors
+from aidl_lang.common.prose import shortened
 from aidl_lang.common.records import record
 from aidl_lang.common.source import SourceFile
 from aidl_lang.parser import parse
@@ -249,8 +250,7 @@ def one_line(value: object, secret: str = "") -> str:
     text = words(value)
     if secret:
         text = text.replace(secret, "…")
-    line = " ".join("".join(c if c.isprintable() else " " for c in text).split())
-    return line if len(line) <= _LINE else line[: _LINE - 1] + "…"
+    return shortened(" ".join("".join(c if c.isprintable() else " " for c in text).split()), _LINE)
 
 
 def count(value: object) -> int | None:
@@ -346,7 +346,8 @@ class Command:
         except subprocess.TimeoutExpired:
             raise self._silence(said_beside) from None
         if code:
-            raise ProviderError("E0936", f"`{self.name}` ended with {_ending(code)}", *_last(said_beside))
+            ending = f"exit code {code}" if code > 0 else signal.Signals(-code).name
+            raise ProviderError("E0936", f"`{self.name}` ended with {ending}", *_last(said_beside))
         if not draft.text.strip():
             raise self._unusable("it wrote nothing", said_beside)
         return self._finished(draft, hear)
@@ -436,10 +437,6 @@ def _parsed(text: str) -> object:
         return json.loads(text)
     except (ValueError, RecursionError):  # a reply may be anything
         return None
-
-
-def _ending(code: int) -> str:
-    return f"exit code {code}" if code > 0 else signal.Signals(-code).name
 
 
 def _last(said: bytes) -> list[str]:
