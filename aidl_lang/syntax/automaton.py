@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from copy import copy
 from functools import cached_property, partial
 from typing import Any, NamedTuple
@@ -335,21 +335,29 @@ def statement_end(source: SourceFile, tokens: Sequence[Token], begin: int) -> in
     return stop
 
 
+def operand_end(tokens: Sequence[Token], at: int, step: int, limit: int, ends: Collection[str] = ()) -> int:
+    """Returns the number of the token at which what stands behind another one (`step` 1) or before it (-1)
+    ends: a bracket around it, or one of the `ends`; the `limit` if there is none before that.
+    """
+    depth, n = 0, at + step
+    while n != limit:
+        deeper = step * tokens[n].nesting
+        if depth == 0 and (deeper < 0 or tokens[n].kind in ends):
+            break
+        depth += deeper
+        n += step
+    return n
+
+
 def closing(tokens: Sequence[Token], opening: int) -> int:
     """Returns the number of the bracket that closes one; -1 if it is missing, or beyond LONGEST tokens."""
-    depth = 0
-    for n in range(opening, min(len(tokens), opening + LONGEST)):
-        depth += tokens[n].nesting
-        if depth == 0:
-            return n
-    return -1
+    limit = min(len(tokens), opening + LONGEST)
+    close = operand_end(tokens, opening, 1, limit)
+    return -1 if close == limit else close
 
 
 def opening(tokens: Sequence[Token], close: int) -> int:
     """Returns the number of the bracket that one closes; its own if that is missing, or too far away."""
-    depth = 0
-    for n in range(close, max(close - LONGEST, -1), -1):
-        depth += tokens[n].nesting
-        if depth == 0:
-            return n
-    return close
+    limit = max(close - LONGEST, -1)
+    found = operand_end(tokens, close, -1, limit)
+    return close if found == limit else found

@@ -19,6 +19,7 @@ from aidl_lang.syntax.automaton import (
     closing,
     line_end,
     opening,
+    operand_end,
     replaced,
     wrong,
 )
@@ -36,6 +37,8 @@ from aidl_lang.syntax.tree import out_of_place
 
 # --- Placements in lists and arguments, where none can stand.
 
+_ITEM_ENDS = (",", "for")
+
 
 def placement_in_expression(t: Trouble) -> SyntaxProblem | None:
     """Recognises `[rib(h: 6) at (8, 8), …]`, `mirror(rib() at (8, 8), …)`."""
@@ -46,7 +49,7 @@ def placement_in_expression(t: Trouble) -> SyntaxProblem | None:
     if close < t.position or t.tokens[close].kind != ("]" if t.open[-1].kind == "[" else ")"):
         return None
     listed = _as_members(t, begin, close)
-    stop = _item_end(t.tokens, t.position, close)
+    stop = operand_end(t.tokens, t.position - 1, 1, close, _ITEM_ENDS)
     call = f"{t.tokens[opening(t.tokens, t.position - 1)].text}…) {t.token.kind} …"
     hint = f"give the part a name of its own: `part = {call}`"
     if t.tokens[stop].kind == "for":
@@ -68,7 +71,7 @@ def _as_members(t: Trouble, opening: int, close: int) -> tuple[Fix, TokenRepair]
     items: list[Sequence[Token]] = []
     start = opening + 1
     while start < close:
-        stop = _item_end(t.tokens, start, close)
+        stop = operand_end(t.tokens, start - 1, 1, close, _ITEM_ENDS)
         if t.tokens[stop].kind == "for" or stop == start:
             return None
         items.append(t.tokens[start:stop])
@@ -83,16 +86,6 @@ def _as_members(t: Trouble, opening: int, close: int) -> tuple[Fix, TokenRepair]
     text = ("\n" + " " * t.indentation(name.start)).join(lines)
     fix = replaced("give each its own line", whole, text)
     return fix, TokenRepair(t.begin, close + 1, tuple(tokens))
-
-
-def _item_end(tokens: Sequence[Token], start: int, close: int) -> int:
-    """Returns the number of the `,` or `for` behind an item, or of the bracket that closes the list."""
-    depth = 0
-    for n in range(start, close):
-        if depth == 0 and tokens[n].kind in (",", "for"):
-            return n
-        depth += tokens[n].nesting
-    return close
 
 
 _EXAMPLE_VALUE = {"param": "80", "var": "5", "let": "w / 2"}
@@ -329,13 +322,10 @@ def semicolons(t: Trouble) -> SyntaxProblem | None:
     is_written = t.token.kind == ";" == t.span().text  # not put in for a bracket
     if not is_written or not t.open or not t.accepts(","):
         return None
-    end, depth, stop = line_end(t.source.text, t.token.start), 0, t.position
-    while depth >= 0 and stop - t.position < LONGEST:
-        stop += 1
-        token = t.tokens[stop]
-        if token.kind in (END, "}") or token.start >= end:
-            return None
-        depth += token.nesting
+    stop = operand_end(t.tokens, t.position, 1, min(len(t.tokens) - 1, t.position + LONGEST))
+    end = line_end(t.source.text, t.token.start)
+    if any(k.kind in (END, "}") or k.start >= end for k in t.tokens[t.position : stop + 1]):
+        return None
     meant = tuple(k.but(",", ",") if k.kind == ";" else k for k in t.tokens[t.position : stop])
     edits = tuple(Edit(t.span(k), ",") for k in t.tokens[t.position : stop] if k.kind == ";")
     message = f"{_ITEMS[t.open[-1].kind]} are separated by `,`; a `;` ends a statement"
@@ -433,17 +423,10 @@ def comma_before_block(t: Trouble) -> SyntaxProblem | None:
     """Recognises `path((0, 0) for i in 0..3 { … })`, where the comma before `for` is missing."""
     if t.token.kind != "{" or not t.open or t.open[-1].kind not in ("CALL", "{"):
         return None
-    depth = 0
-    for n in range(t.position - 1, max(t.begin, t.position - LONGEST), -1):
-        token, before = t.tokens[n], t.tokens[n - 1]
-        if token.kind in ("for", "if") and not depth:
-            break
-        depth -= token.nesting
-        if depth < 0:
-            return None
-    else:
-        return None
-    if before.kind not in (*VALUE_ENDS, "STRING"):
+    limit = max(t.begin, t.position - LONGEST)
+    n = operand_end(t.tokens, t.position, -1, limit, ("for", "if"))
+    token, before = t.tokens[n], t.tokens[n - 1]
+    if n <= limit or token.kind not in ("for", "if") or before.kind not in (*VALUE_ENDS, "STRING"):
         return None
     place = Span(t.source, before.end, before.end)
     message = f"expected `,` before a block of arguments that begins with `{token.text}`"

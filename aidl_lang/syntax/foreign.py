@@ -17,6 +17,7 @@ from aidl_lang.syntax.automaton import (
     Trouble,
     closing,
     line_end,
+    operand_end,
     replaced,
     statement_end,
     wrong,
@@ -211,10 +212,10 @@ def question_mark(t: Trouble) -> SyntaxProblem | None:
     """Recognises `c ? a : b`."""
     if t.token.text != "?" or t.between:
         return None
-    begin = _operand(t.tokens, t.position, -1, max(t.begin, t.position - LONGEST) - 1) + 1
-    last = min(t.position + LONGEST, len(t.tokens) - 1)
-    colon = _operand(t.tokens, t.position, 1, last)
-    stop = _operand(t.tokens, colon, 1, last) if colon < last else last
+    first, last = max(t.begin, t.position - LONGEST), min(t.position + LONGEST, len(t.tokens) - 1)
+    begin = operand_end(t.tokens, t.position, -1, first - 1, _SEPARATORS) + 1
+    colon = operand_end(t.tokens, t.position, 1, last, _SEPARATORS)
+    stop = operand_end(t.tokens, colon, 1, last, _SEPARATORS) if colon < last else last
     if t.tokens[colon].kind != ":" or begin == t.position or stop <= colon + 1:
         return None
     parts = t.tokens[begin : t.position], t.tokens[t.position + 1 : colon], t.tokens[colon + 1 : stop]
@@ -227,16 +228,7 @@ def question_mark(t: Trouble) -> SyntaxProblem | None:
     return wrong("E0109", f"a choice is written `{right}`", span, right=right, repair=repair)
 
 
-def _operand(tokens: Sequence[Token], at: int, step: int, limit: int) -> int:
-    """Returns the number of the token that ends the operand before or behind: a separator or a bracket."""
-    depth, n = 0, at + step
-    while n != limit:
-        deeper = step * tokens[n].nesting
-        if depth == 0 and (deeper < 0 or tokens[n].kind in (",", ";", ":", "=", END)):
-            break
-        depth += deeper
-        n += step
-    return n
+_SEPARATORS = (",", ";", ":", "=", END)
 
 
 def inches(t: Trouble) -> SyntaxProblem | None:
