@@ -400,7 +400,12 @@ def groups_riding(problem: Problem) -> Riding:
     movable &= problem.sealed == 0
     carried = ~named.frames & problem.named
     carried[0] = False
-    return Riding(carried, _anchors(problem, carried), movable)
+    clinging = problem.clinging or frozenset()
+    anchor = np.zeros(len(carried), dtype=np.intp)
+    for group, parent in enumerate(problem.parent.tolist()):
+        if group:
+            anchor[group] = group if carried[group] and group in clinging else anchor[parent]
+    return Riding(carried, anchor, movable)
 
 
 def _stirred(problem: Problem, named: Naming, movable: Bools) -> Bools:
@@ -414,15 +419,6 @@ def _stirred(problem: Problem, named: Naming, movable: Bools) -> Bools:
     is_content = (problem.frame_of < 0) & ~problem.kept & named.whole[problem.group]
     found: Bools = is_content & ~shifts[axis, problem.group]
     return found
-
-
-def _anchors(problem: Problem, carried: Bools) -> Ints:
-    clinging = problem.clinging or frozenset()
-    anchor = np.zeros(len(carried), dtype=np.intp)
-    for group, parent in enumerate(problem.parent.tolist()):
-        if group:
-            anchor[group] = group if carried[group] and group in clinging else anchor[parent]
-    return anchor
 
 
 @record()
