@@ -116,7 +116,12 @@ def typeset(text: str, align: str, line_spacing: float, font: Font | None = None
     """
     found: list[Glyph] = []
     for number, line in enumerate(_composed(text).split("\n")):
-        placed = list(_set_line(line, font or plain_font()))
+        pen, placed = 0.0, list[Glyph]()
+        for character in line:
+            glyph, advance = (font or plain_font()).glyph(character)
+            if glyph is not None:
+                placed.append(glyph.moved(pen, 0.0))
+            pen += advance
         if placed:
             left, _, right, _ = box_around(placed)
             shift = left + ALIGNMENTS[align] * (right - left)
@@ -127,15 +132,6 @@ def typeset(text: str, align: str, line_spacing: float, font: Font | None = None
 def _composed(text: str) -> str:
     """Returns a text with each accented letter as one character, and one kind of line break."""
     return unicodedata.normalize("NFC", text).replace("\r\n", "\n")
-
-
-def _set_line(line: str, font: Font) -> Iterator[Glyph]:
-    pen = 0.0
-    for character in line:
-        glyph, advance = font.glyph(character)
-        if glyph is not None:
-            yield glyph.moved(pen, 0.0)
-        pen += advance
 
 
 # --- Fonts ---------------------------------------------------------------------------------------

@@ -438,19 +438,15 @@ def _parts(elements: Iterable[Element], kind: str) -> tuple[dict[str, Trace], in
     for written, of in members.items():
         if len(parts) == MOST_NAMES:
             return parts, len(members) - MOST_NAMES
-        name = _sanitised(written, kind)
+        name = re.sub(r"\W+", "_", written[:_LONGEST_NAME]).strip("_") or kind
+        if name[0].isdigit() or not name[0].isidentifier():
+            name = f"{kind}_{name}"
         if any(fold(name) == fold(known) and part.elements == tuple(of) for known, part in parts.items()):
             continue  # the label of a group and its id
         name = _free(name, taken)
         taken.add(fold(name))
         parts[name] = Trace(name, tuple(of))
     return parts, 0
-
-
-def _sanitised(written: str, kind: str) -> str:
-    """Returns the name of AIDL that is most like one of a file."""
-    name = re.sub(r"\W+", "_", written[:_LONGEST_NAME]).strip("_") or kind
-    return f"{kind}_{name}" if name[0].isdigit() or not name[0].isidentifier() else name
 
 
 def _free(name: str, taken: set[str]) -> str:

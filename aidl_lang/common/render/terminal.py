@@ -265,12 +265,9 @@ def compact(diagnostics: Sequence[Diagnostic]) -> str:
     main = names.most_common(1)[0][0] if names else ""
     blocks = ["\n".join(_lines(d, main)) for d in shown]
     left = Counter(d.code for d in ranked) - Counter(d.code for d in shown)
-    blocks += [f"and {count} more {code}{_alike(code, shown)}" for code, count in left.items()]
-    return "\n\n".join(blocks)
-
-
-def _alike(code: str, shown: Iterable[Diagnostic]) -> str:
-    return ", to be mended alike" if any(d.code == code for d in shown) else ""
+    told = {d.code for d in shown}
+    alike = {code: ", to be mended alike" * (code in told) for code in left}
+    return "\n\n".join([*blocks, *(f"and {count} more {code}{alike[code]}" for code, count in left.items())])
 
 
 def _lines(d: Diagnostic, main: str) -> Iterator[str]:
@@ -281,16 +278,12 @@ def _lines(d: Diagnostic, main: str) -> Iterator[str]:
     if d.label:
         yield f"  why: {_one_line(d.label)}"
     for label in d.secondary:
-        yield f"  {_remark(label, main)}"
+        text = f": {_one_line(label.text)}" if label.text else ""
+        yield f"  {_place_in_words(label.span, main)}{text} | {_quoted(label.span)}"
     for hint in d.hints:
         yield f"  hint: {_one_line(hint)}"
     if d.fix:
         yield from _fix_in_words(d.fix, main)
-
-
-def _remark(label: Label, main: str) -> str:
-    text = f": {_one_line(label.text)}" if label.text else ""
-    return f"{_place_in_words(label.span, main)}{text} | {_quoted(label.span)}"
 
 
 def _fix_in_words(fix: Fix, main: str) -> Iterator[str]:
