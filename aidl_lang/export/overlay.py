@@ -146,10 +146,11 @@ def explain(
     if not show:
         return box, layers
     at = Explainer(model, drawing, size)
-    makers = {"plan": _plans, "bbox": _boxes, "points": _points, "names": _names}
-    for name, make in makers.items():
+    boxes = (Frame(box, marks.BOX, at.hair, 4 * at.hair) for _, box in at.boxes())
+    makers = {"plan": _plans(at), "bbox": boxes, "points": _points(at), "names": _names(at)}
+    for name, made in makers.items():
         if name in show:
-            layers[name] = list(make(at))
+            layers[name] = list(made)
     # Lists stand beside a tall drawing and below a wide one, where they cost the least of its size.
     wide = box[2] - box[0] > 1.25 * (box[3] - box[1])
     corner = (box[0], box[1] - 3 * at.font) if wide else (box[2] + 2 * at.font, box[3] - 0.7 * at.font)
@@ -191,10 +192,6 @@ def _name(at: Explainer, structure: SolvedStructure, box: Bounds, size: float) -
     if fits and not structure.structures and not at.overlap(inside.box):
         return at.first_free([inside])
     return at.label(structure.name, box, marks.NAME, size, bold=structure is at.model.root)
-
-
-def _boxes(at: Explainer) -> Iterator[Mark]:
-    return (Frame(box, marks.BOX, at.hair, 4 * at.hair) for _, box in at.boxes())
 
 
 def _plans(at: Explainer) -> Iterator[Mark]:
