@@ -137,17 +137,13 @@ def _characters(data: bytes) -> _Characters:
         if platform == 0 or (platform == 3 and encoding in (1, 10)):
             found.setdefault(struct.unpack_from(">H", data, at)[0], at)
     if 12 in found:
-        return _Characters(list(_groups(data, found[12])))
+        at = found[12]
+        (count,) = struct.unpack_from(">L", data, at + 12)
+        groups = range(min(count, len(data) // 12))
+        return _Characters([struct.unpack_from(">LLL", data, at + 16 + 12 * k) for k in groups])
     if 4 in found:
         return _Characters(list(_segments(data, found[4])))
     raise FontError("it does not say which characters it has")
-
-
-def _groups(data: bytes, at: int) -> Iterator[tuple[int, int, int]]:
-    """Yields the runs of a map of format 12."""
-    (count,) = struct.unpack_from(">L", data, at + 12)
-    for k in range(min(count, len(data) // 12)):
-        yield struct.unpack_from(">LLL", data, at + 16 + 12 * k)
 
 
 def _segments(data: bytes, at: int) -> Iterator[tuple[int, int, int]]:

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import math
 import unicodedata
-from bisect import bisect_right
 from collections.abc import Iterator, Sequence
 from functools import cache, lru_cache
 from itertools import pairwise
+
+import numpy as np
 
 from aidl_lang.common.font_files import Curve, FontFile, Vec, point_of
 from aidl_lang.common.records import record
@@ -57,10 +58,18 @@ def silhouette(curves: Sequence[Curve]) -> tuple[Curve, ...]:
     """Returns the corners of the convex hull of curves, each alone, and the curves of which a part may lie on
     it. In every direction the furthest point of all belongs to one of these.
     """
-    hull = _Hull([p for curve in curves for p in _samples(curve)])
-    bent = [c for c in curves if len(c) > 2 and not all(p in hull for p in c)]
+    ordered = sorted({p for curve in curves for p in _samples(curve)})
+    corners = [*_chain(ordered)[:-1], *_chain(ordered[::-1])[:-1]]
+    start = np.array(corners).reshape(-1, 2)
+    way = np.roll(start, -1, axis=0) - start
+
+    def is_inside(curve: Curve) -> bool:
+        gap = np.array(curve)[:, None] - start
+        return bool((way[:, 0] * gap[..., 1] >= way[:, 1] * gap[..., 0]).all())
+
+    bent = [c for c in curves if len(c) > 2 and not is_inside(c)]
     ends = {p for c in curves for p in (c[0], c[-1])}
-    return (*((p,) for p in hull.corners if p in ends), *bent)
+    return (*((p,) for p in corners if p in ends), *bent)
 
 
 _SAMPLES = 16
@@ -75,41 +84,20 @@ def _samples(curve: Curve) -> Sequence[Vec]:
     return [curve[0], *between, curve[-1]]
 
 
-class _Hull:
-    """The convex hull of points (Andrew, 1979): its corners counter-clockwise, and its chains from left to
-    right, in which points are found by bisection.
+def _chain(ordered: Sequence[Vec]) -> list[Vec]:
+    """Returns the chain of those sorted points that have all others to their left, as one goes along it: a
+    half of their convex hull (Andrew, 1979).
     """
 
-    def __init__(self, points: Sequence[Vec]) -> None:
-        ordered = sorted(set(points))
-        lower, upper = _chain(ordered), _chain(ordered[::-1])
-        self.corners = [*lower[:-1], *upper[:-1]]
-        self._chains = [(chain, [x for x, _ in chain]) for chain in (lower, upper[::-1])]
+    def turns_left(a: Vec, b: Vec, c: Vec) -> bool:
+        return (b[0] - a[0]) * (c[1] - a[1]) > (b[1] - a[1]) * (c[0] - a[0])
 
-    def __contains__(self, p: Vec) -> bool:
-        """Tells whether a point lies inside the hull or on its outline."""
-        for sense, (chain, lefts) in zip((1.0, -1.0), self._chains, strict=True):
-            if not lefts[0] <= p[0] <= lefts[-1]:
-                return False
-            k = min(bisect_right(lefts, p[0]), len(chain) - 1)
-            if k > 0 and sense * _turn(chain[k - 1], chain[k], p) < 0.0:
-                return False
-        return True
-
-
-def _chain(ordered: Sequence[Vec]) -> list[Vec]:
-    """Returns the chain of those sorted points that have all others to their left, as one goes along it."""
     chain: list[Vec] = []
     for p in ordered:
-        while len(chain) > 1 and _turn(chain[-2], chain[-1], p) <= 0.0:
+        while len(chain) > 1 and not turns_left(chain[-2], chain[-1], p):
             chain.pop()
         chain.append(p)
     return chain
-
-
-def _turn(a: Vec, b: Vec, c: Vec) -> float:
-    """Returns twice the signed area of a triangle: positive if c lies left of the way from a to b."""
-    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 
 
 def unknown_characters(text: str, font: Font | None = None) -> list[str]:
@@ -128,7 +116,12 @@ def typeset(text: str, align: str, line_spacing: float, font: Font | None = None
     """
     found: list[Glyph] = []
     for number, line in enumerate(_composed(text).split("\n")):
-        placed = list(_set_line(line, font or plain_font()))
+        pen, placed = 0.0, list[Glyph]()
+        for character in line:
+            glyph, advance = (font or plain_font()).glyph(character)
+            if glyph is not None:
+                placed.append(glyph.moved(pen, 0.0))
+            pen += advance
         if placed:
             left, _, right, _ = box_around(placed)
             shift = left + ALIGNMENTS[align] * (right - left)
@@ -139,15 +132,6 @@ def typeset(text: str, align: str, line_spacing: float, font: Font | None = None
 def _composed(text: str) -> str:
     """Returns a text with each accented letter as one character, and one kind of line break."""
     return unicodedata.normalize("NFC", text).replace("\r\n", "\n")
-
-
-def _set_line(line: str, font: Font) -> Iterator[Glyph]:
-    pen = 0.0
-    for character in line:
-        glyph, advance = font.glyph(character)
-        if glyph is not None:
-            yield glyph.moved(pen, 0.0)
-        pen += advance
 
 
 # --- Fonts ---------------------------------------------------------------------------------------

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import field, replace
+from itertools import chain
 
 from aidl_lang.common.prose import counted
 from aidl_lang.common.records import record
@@ -224,27 +225,17 @@ class _Layout:
     # --- Along the axes ----------------------------------------------------------------------------
 
     def _in_row(self, of: Length, words: str) -> PlacedDimension | None:
-        best: tuple[float, PlacedDimension, _Row | None] | None = None
-        for side in (-1, 1):
-            for after in (True, False):
-                found = self._row(of, words, side, after)
-                if found is None:
-                    continue
-                placed, row = found
-                # Below and to the right where nothing speaks against it.
-                cost = self._stretch(placed) + self.sheet.harm(placed) + 0.3 * (side > 0) + 0.1 * (not after)
-                if best is None or cost < best[0]:
-                    best = cost, placed, row
-        for cost, placed in self._near(of, words):
-            if (best is None or cost < best[0]) and self.sheet.is_free(placed):
-                total = cost + self.sheet.harm(placed)
-                if best is None or total < best[0]:
-                    best = total, placed, None
-        if best is None:
-            return None
-        if best[2] is not None:
-            self.rows.append(best[2])
-        return best[1]
+        # Below and to the right where nothing speaks against it.
+        rows = [
+            (self._stretch(found[0]) + 0.3 * (side > 0) + 0.1 * (not after), *found)
+            for side in (-1, 1)
+            for after in (True, False)
+            if (found := self._row(of, words, side, after)) is not None
+        ]
+        outside = ((cost, placed) for cost, placed, _ in rows)
+        best = self._best(chain(outside, self._near(of, words)))
+        self.rows += [row for _, placed, row in rows if placed is best]
+        return best
 
     def _stretch(self, placed: PlacedDimension) -> float:
         return sum(math.dist(*e) for e in placed.extensions) / (20 * self.pen.mm)

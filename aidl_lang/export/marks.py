@@ -166,9 +166,15 @@ def widened(box: Bounds, by: float) -> Bounds:
     return box[0] - by, box[1] - by, box[2] + by, box[3] + by
 
 
-def polygon(*corners: Vec) -> Face:
+def corners(box: Bounds) -> tuple[Vec, Vec, Vec, Vec]:
+    """Returns the corners of a box, counter-clockwise from the lower left one."""
+    left, bottom, right, top = box
+    return (left, bottom), (right, bottom), (right, top), (left, top)
+
+
+def polygon(*at: Vec) -> Face:
     """Returns the face with these corners, counter-clockwise."""
-    return Face(Loop(tuple(Line(p, q) for p, q in zip(corners, corners[1:] + corners[:1], strict=True))))
+    return Face(Loop(tuple(Line(p, q) for p, q in zip(at, at[1:] + at[:1], strict=True))))
 
 
 def arrowhead(tip: Vec, way: Vec, length: float, width: float) -> Face:
@@ -194,9 +200,7 @@ class Block:
     @cached_property
     def corners(self) -> tuple[Vec, ...]:
         (c, s), _ = self.axes
-        left, bottom, right, top = self.sides
-        at = ((left, bottom), (right, bottom), (right, top), (left, top))
-        return tuple((self.at[0] + c * x - s * y, self.at[1] + s * x + c * y) for x, y in at)
+        return tuple((self.at[0] + c * x - s * y, self.at[1] + s * x + c * y) for x, y in corners(self.sides))
 
     @cached_property
     def box(self) -> Bounds:
@@ -480,9 +484,7 @@ def themed(picture: Picture, name: str) -> Picture:
     if name in (AS_COLOURED, FOR_CUTTER):
         return picture
     theme = REDUCED[name]
-    left, bottom, right, top = picture.box
-    sheet = polygon((left, bottom), (right, bottom), (right, top), (left, top))
-    paper = Group("paper", (Area(sheet, theme.paper, None, "paper"),))
+    paper = Group("paper", (Area(polygon(*corners(picture.box)), theme.paper, None, "paper"),))
     made = _redrawn(picture, lambda mark: _reduced(mark, theme))
     return replace(made, groups=(paper, *made.groups))
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import uuid
 from collections.abc import Iterator, Mapping, Sequence
+from functools import cache
 from typing import Any
 
 import manifold3d
@@ -112,24 +113,6 @@ def _planes(job: Job) -> dict[str, Plane]:
     return planes(job.model.root)
 
 
-def thick_bodies(job: Job) -> tuple[list[PlacedBody], tuple[Diagnostic, ...]]:
-    """Returns the bodies that have a thickness, and a warning that names the others."""
-    bodies = placed_bodies(job)
-    thick = [p for p in bodies if p.thickness is not None]
-    flat = [p.body.path for p in bodies if p.thickness is None]
-    if not bodies:
-        raise ExportError(
-            "E0917", "there is no body to write", "material is what the curves of a `solid` enclose"
-        )
-    if not flat:
-        return thick, ()
-    have = f"{named(flat, _NAMED)} {'has' if len(flat) == 1 else 'have'} no thickness"
-    if not thick:
-        raise ExportError("E0917", have, *_REMEDIES)
-    left_out = "is left out" if len(flat) == 1 else "are left out"
-    return thick, (Diagnostic("W0725", f"{have} and {left_out}", hints=_REMEDIES),)
-
-
 def _require_place(path: str, plane: Plane) -> None:
     if not np.abs(plane.origin).max() <= LARGEST:
         message = f"`{path}` cannot be placed in space: it lies further out than {LARGEST:g} mm"
@@ -173,8 +156,18 @@ def meshes(job: Job) -> tuple[list[Mesh], tuple[Diagnostic, ...]]:
     """Returns the meshes of the bodies in order of drawing, with diagnostics about them. Raises ExportError
     if no body has a thickness (E0917), or one cannot be made solid (E0918).
     """
-    bodies, notes = thick_bodies(job)
-    return [_mesh(placed) for placed in bodies], (*notes, *placement_notes(job.model.root, job.drawing))
+    bodies, notes = placed_bodies(job), tuple(placement_notes(job.model.root, job.drawing))
+    flat = [p.body.path for p in bodies if p.thickness is None]
+    if not bodies:
+        hint = "material is what the curves of a `solid` enclose"
+        raise ExportError("E0917", "there is no body to write", hint)
+    if flat:
+        have = f"{named(flat, _NAMED)} {'has' if len(flat) == 1 else 'have'} no thickness"
+        if len(flat) == len(bodies):
+            raise ExportError("E0917", have, *_REMEDIES)
+        left_out = "is left out" if len(flat) == 1 else "are left out"
+        notes = (Diagnostic("W0725", f"{have} and {left_out}", hints=_REMEDIES), *notes)
+    return [_mesh(placed) for placed in bodies if placed.thickness is not None], notes
 
 
 def printable(name: str) -> str:
@@ -313,7 +306,13 @@ def to_3mf(job: Job) -> Exported:
     model = wrapper.CreateModel()
     model.SetUnit(lib3mf.ModelUnit.MilliMeter)
     model.SetBuildUUID(_id("build", job.model.root.path))
-    materials = _Materials(wrapper, model)
+    materials = model.AddBaseMaterialGroup()
+
+    @cache
+    def material(name: str, color: str, opacity: float) -> int:
+        number: int = materials.AddMaterial(name, wrapper.RGBAToColor(*rgb(color), round(255 * opacity)))
+        return number
+
     order = {body.path: index for index, body in enumerate(job.drawing.bodies)}
     for mesh in made:
         checkpoint()
@@ -321,7 +320,8 @@ def to_3mf(job: Job) -> Exported:
         style = mesh.body.style
         color = style.color or body_fill(order[mesh.body.path])
         name, opacity = printable(style.material or mesh.body.path), style.opacity
-        thing.SetObjectLevelProperty(*materials.of(name, color, 1.0 if opacity is None else opacity))
+        own = material(name, color, 1.0 if opacity is None else opacity)
+        thing.SetObjectLevelProperty(materials.GetResourceID(), own)
         item = model.AddBuildItem(thing, wrapper.GetIdentityTransform())
         item.SetUUID(_id("item", mesh.body.path))
     return Exported(bytes(model.QueryWriter("3mf").WriteToBuffer()), notes=notes)
@@ -338,22 +338,6 @@ def _mesh_object(lib3mf: Any, model: Any, mesh: Mesh) -> Any:
     points = [lib3mf.Position(tuple(p)) for p in mesh.points.tolist()]
     thing.SetGeometry(points, [lib3mf.Triangle(tuple(t)) for t in mesh.triangles.tolist()])
     return thing
-
-
-class _Materials:
-    """One group of materials, each a name and a colour, without duplicates."""
-
-    def __init__(self, wrapper: Any, model: Any) -> None:
-        self.wrapper, self.group = wrapper, model.AddBaseMaterialGroup()
-        self.known: dict[tuple[str, str, float], int] = {}
-
-    def of(self, name: str, color: str, opacity: float) -> tuple[int, int]:
-        """Returns the ids of the group and of the material in it."""
-        key = name, color, opacity
-        if key not in self.known:
-            paint = self.wrapper.RGBAToColor(*rgb(color), round(255 * opacity))
-            self.known[key] = self.group.AddMaterial(name, paint)
-        return self.group.GetResourceID(), self.known[key]
 
 
 def _id(sort: str, path: str) -> str:

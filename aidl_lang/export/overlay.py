@@ -17,7 +17,7 @@ from aidl_lang.export import marks
 from aidl_lang.export.job import Job
 from aidl_lang.export.marks import CHARACTER, Dot, Frame, Mark, Text, widened
 from aidl_lang.geometry.curves import Bounds, Vec, are_near, bounds, union_bounds
-from aidl_lang.geometry.drawing import Body, Drawing
+from aidl_lang.geometry.drawing import Drawing
 from aidl_lang.geometry.nearness import from_sides, inside
 from aidl_lang.geometry.region import COARSE, Region, piece_points, region_polygons
 from aidl_lang.geometry.solved import ConstraintReport, SolvedGeometry, SolvedModel, SolvedStructure
@@ -44,15 +44,11 @@ def labels(job: Job) -> Iterator[Text]:
         words = [str(numbers[body.path])] if numbers else []
         words += [body.path.removeprefix(f"{root}.")] if "names" in asked else []
         label = " ".join(words)
-        middle, size = _room(body.region, _lines_on(body, job.drawing), CHARACTER * len(label))
+        pieces = (piece for stroke in job.drawing.strokes for piece in stroke.pieces)
+        engraved = [piece_points(piece, COARSE) for piece in pieces if are_near(bounds(piece), body.box)]
+        middle, size = _room(body.region, engraved, CHARACTER * len(label))
         at = middle[0], middle[1] - _BASELINE * size
         yield Text(at, label, size, marks.NAME, "middle", halo=False)
-
-
-def _lines_on(body: Body, drawing: Drawing) -> list[NDArray[np.float64]]:
-    """Returns what is engraved about a body, as polylines."""
-    pieces = (piece for stroke in drawing.strokes for piece in stroke.pieces)
-    return [piece_points(piece, COARSE) for piece in pieces if are_near(bounds(piece), body.box)]
 
 
 def _room(region: Region, engraved: list[NDArray[np.float64]], width: float) -> tuple[Vec, float]:
@@ -94,36 +90,14 @@ LINE_LENGTH = 58
 _Thing: TypeAlias = SolvedStructure | SolvedGeometry
 
 
-class Taken:
-    """Boxes of what is on the picture already."""
-
-    def __init__(self) -> None:
-        self._boxes = np.empty((64, 4))
-        self._count = 0
-
-    def add(self, box: Bounds) -> None:
-        if self._count == len(self._boxes):
-            self._boxes = np.concatenate((self._boxes, np.empty_like(self._boxes)))
-        self._boxes[self._count] = box
-        self._count += 1
-
-    def overlap(self, box: Bounds) -> float:
-        """Returns the area by which a box covers others."""
-        left, bottom, right, top = self._boxes[: self._count].T
-        width = np.minimum(right, box[2]) - np.maximum(left, box[0])
-        height = np.minimum(top, box[3]) - np.maximum(bottom, box[1])
-        covered: list[float] = (width * height)[(width > 0) & (height > 0)].tolist()
-        return sum(covered)
-
-
 @record(frozen=False)
 class Explainer:
-    """The state of one overlay: the boxes taken, font size and line width."""
+    """The state of one overlay: font size and line width, and the boxes (n, 4) of what is on it already."""
 
     model: SolvedModel
     drawing: Drawing
     size: float
-    taken: Taken = field(default_factory=Taken)
+    taken: NDArray[np.float64] = field(default_factory=lambda: np.empty((0, 4)))
 
     @property
     def font(self) -> float:
@@ -132,6 +106,17 @@ class Explainer:
     @property
     def hair(self) -> float:
         return 0.0012 * self.size
+
+    def take(self, box: Bounds) -> None:
+        self.taken = np.vstack((self.taken, box))
+
+    def overlap(self, box: Bounds) -> float:
+        """Returns the area by which a box covers others."""
+        left, bottom, right, top = self.taken.T
+        width = np.minimum(right, box[2]) - np.maximum(left, box[0])
+        height = np.minimum(top, box[3]) - np.maximum(bottom, box[1])
+        covered: list[float] = (width * height)[(width > 0) & (height > 0)].tolist()
+        return sum(covered)
 
     def boxes(self) -> Iterator[tuple[SolvedStructure, Bounds]]:
         for structure in self.model.root.walk():
@@ -146,8 +131,8 @@ class Explainer:
     def first_free(self, candidates: list[Text]) -> Text:
         checkpoint()
         air = 0.2 * candidates[0].size
-        chosen = min(candidates, key=lambda c: self.taken.overlap(widened(c.box, air)))
-        self.taken.add(chosen.box)
+        chosen = min(candidates, key=lambda c: self.overlap(widened(c.box, air)))
+        self.take(chosen.box)
         return chosen
 
 
@@ -161,10 +146,11 @@ def explain(
     if not show:
         return box, layers
     at = Explainer(model, drawing, size)
-    makers = {"plan": _plans, "bbox": _boxes, "points": _points, "names": _names}
-    for name, make in makers.items():
+    boxes = (Frame(box, marks.BOX, at.hair, 4 * at.hair) for _, box in at.boxes())
+    makers = {"plan": _plans(at), "bbox": boxes, "points": _points(at), "names": _names(at)}
+    for name, made in makers.items():
         if name in show:
-            layers[name] = list(make(at))
+            layers[name] = list(made)
     # Lists stand beside a tall drawing and below a wide one, where they cost the least of its size.
     wide = box[2] - box[0] > 1.25 * (box[3] - box[1])
     corner = (box[0], box[1] - 3 * at.font) if wide else (box[2] + 2 * at.font, box[3] - 0.7 * at.font)
@@ -203,13 +189,9 @@ def _name(at: Explainer, structure: SolvedStructure, box: Bounds, size: float) -
     """Places a name in the upper left corner of a structure without parts if it fits, else around it."""
     inside = Text((box[0] + 0.35 * size, box[3] - 1.1 * size), structure.name, size, marks.NAME)
     fits = inside.box[2] < box[2] and box[3] - box[1] > 2.5 * size
-    if fits and not structure.structures and not at.taken.overlap(inside.box):
+    if fits and not structure.structures and not at.overlap(inside.box):
         return at.first_free([inside])
     return at.label(structure.name, box, marks.NAME, size, bold=structure is at.model.root)
-
-
-def _boxes(at: Explainer) -> Iterator[Mark]:
-    return (Frame(box, marks.BOX, at.hair, 4 * at.hair) for _, box in at.boxes())
 
 
 def _plans(at: Explainer) -> Iterator[Mark]:
@@ -221,7 +203,7 @@ def _plans(at: Explainer) -> Iterator[Mark]:
         label = Text(
             ((left + right) / 2, (top + bottom) / 2 - 0.3 * size), plan.name, size, marks.PLAN, "middle"
         )
-        at.taken.add(label.box)
+        at.take(label.box)
         yield label
 
 
@@ -239,7 +221,7 @@ def _points(at: Explainer) -> Iterator[Mark]:
                     names[key].append(name)
     radius = 0.2 * at.font
     for p in places.values():
-        at.taken.add((p[0] - radius, p[1] - radius, p[0] + radius, p[1] + radius))
+        at.take((p[0] - radius, p[1] - radius, p[0] + radius, p[1] + radius))
         yield Dot(p, radius, marks.POINT)
     if len(places) <= MANY:
         size = 0.6 * at.font

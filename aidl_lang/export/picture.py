@@ -28,6 +28,7 @@ from aidl_lang.export.marks import (
     Picture,
     Stop,
     Text,
+    corners,
     themed,
     widened,
 )
@@ -223,8 +224,7 @@ def _reaches(line: Polygon, low: Polygon, high: Polygon) -> bool:
 
 
 def _outline(box: Bounds) -> Polygon:
-    left, bottom, right, top = box
-    return np.array([(left, bottom), (right, bottom), (right, top), (left, top), (left, bottom)])
+    return np.array([*corners(box), box[:2]])
 
 
 # One group for each structure from back to front: later siblings lie over earlier ones, unless they say

@@ -30,7 +30,8 @@ from OCP.STEPConstruct import STEPConstruct, STEPConstruct_RenderingProperties, 
 from OCP.StepData import StepData_StepModel
 from OCP.StepRepr import StepRepr_NextAssemblyUsageOccurrence
 from OCP.StepVisual import StepVisual_MechanicalDesignGeometricPresentationRepresentation
-from OCP.TCollection import TCollection_ExtendedString, TCollection_HAsciiString
+from OCP.TCollection import TCollection_ExtendedString
+from OCP.TCollection import TCollection_HAsciiString as _ascii
 from OCP.TDataStd import TDataStd_Name
 from OCP.TDF import TDF_Label
 from OCP.TDocStd import TDocStd_Document
@@ -448,10 +449,6 @@ class _File:
 
     def _number(self, text: str) -> str:
         return f"~{self._numbers.setdefault(text, len(self._numbers))}~"
-
-
-def _ascii(text: str) -> TCollection_HAsciiString:
-    return TCollection_HAsciiString(text)
 
 
 def _text(value: str) -> bytes:

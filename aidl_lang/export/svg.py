@@ -6,7 +6,7 @@ import io
 import math
 import re
 import sys
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from functools import partial
@@ -96,10 +96,10 @@ def xy(p: Vec) -> str:
 
 def face_path(face: Face) -> str:
     """Returns all loops of a face as one path, its holes really cut out."""
-    return "".join(loop_path(loop) for loop in face.loops)
+    return "".join(map(_loop_path, face.loops))
 
 
-def loop_path(loop: Loop) -> str:
+def _loop_path(loop: Loop) -> str:
     if loop.is_whole:
         return _whole(loop.pieces[0], clockwise=loop.reversed)
     pieces = loop.pieces
@@ -110,21 +110,16 @@ def loop_path(loop: Loop) -> str:
 
 def open_path(pieces: Sequence[Piece]) -> str:
     """Returns curves one after the other, moving only where one does not start at the end before."""
-    return "".join(_chain(pieces))
-
-
-def _chain(pieces: Iterable[Piece]) -> Iterable[str]:
-    at: Vec | None = None
+    path, at = "", None
     for piece in pieces:
         if isinstance(piece, Circle | Ellipse):
-            yield _whole(piece, clockwise=False)
+            path += _whole(piece, clockwise=False)
             at = None
             continue
         start, end = ends(piece)
-        if start != at:
-            yield f"M{xy(start)}"
-        yield _segment(piece)
+        path += _segment(piece) if start == at else f"M{xy(start)}{_segment(piece)}"
         at = end
+    return path
 
 
 def _whole(piece: Piece, clockwise: bool) -> str:
@@ -180,7 +175,9 @@ def to_svg(picture: Picture, pixels: tuple[int, int] | None = None, units: str =
         path = document.clipPath(id=name)
         path.add(_rectangle(clip, document))
         document.defs.add(path)
-    shades = _shades(picture)
+    marks = (mark for group in picture.groups for mark in group.marks)
+    used = (mark.gradient for mark in marks if isinstance(mark, Area) and mark.gradient is not None)
+    shades = {gradient: f"shade-{k}" for k, gradient in enumerate(dict.fromkeys(used), 1)}
     for gradient, name in shades.items():
         document.defs.add(_gradient(gradient, name, document))
     for group in picture.groups:
@@ -192,12 +189,6 @@ def to_svg(picture: Picture, pixels: tuple[int, int] | None = None, units: str =
     document.write(text)
     # One element per line. Text is escaped, so this pattern stands between tags only.
     return text.getvalue().replace("><", ">\n<") + "\n"
-
-
-def _shades(picture: Picture) -> dict[Gradient, str]:
-    marks = (mark for group in picture.groups for mark in group.marks)
-    used = (mark.gradient for mark in marks if isinstance(mark, Area) and mark.gradient is not None)
-    return {gradient: f"shade-{k}" for k, gradient in enumerate(dict.fromkeys(used), 1)}
 
 
 def _gradient(gradient: Gradient, name: str, svg: Any) -> Any:
@@ -218,9 +209,8 @@ def _gradient(gradient: Gradient, name: str, svg: Any) -> Any:
 
 
 def _group(svg: Any, group: Group, shades: Mapping[Gradient, str]) -> Any:
-    attributes = {key: _clean(value) for key, value in group.attributes.items()}
     element = svg.g(id=_clean(group.name))
-    element.attribs.update(attributes)
+    element.attribs.update({key: _clean(value) for key, value in group.attributes.items()})
     for mark in group.marks:
         checkpoint()
         if isinstance(mark, Area) and mark.gradient is not None:

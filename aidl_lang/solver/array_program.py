@@ -8,7 +8,7 @@ there are, and in which order they are visited, is laid out once.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Collection, Sequence
 from functools import cached_property
 from itertools import pairwise
 
@@ -384,14 +384,17 @@ class ArrayFreezing:
     def _find_pairs(self, roots: Ints) -> _Layout:
         steps: list[Step] = []
         count, width = len(self.values), len(self._free)
-        above = _Pending()
-        rows = np.arange(len(roots))
-        above.add(self._levels[roots], rows, roots, np.full(len(roots), -1), np.full(len(roots), 4 * count))
+        above: dict[int, list[tuple[Ints, ...]]] = {}
+        """Pairs still to be visited, by level: row, node, pair above, place of the slope between them."""
+        rows, unset = np.arange(len(roots)), np.full(len(roots), -1)
+        _add_by_level(above, self._levels[roots], rows, roots, unset, np.full(len(roots), 4 * count))
         low = 0
         visited_rows, visited = [rows[:0]], [rows[:0]]
         row, second = rows[:0], roots[:0]
-        for level in above.descending():
-            row, node, parent, slope = above.take(level)
+        while above:
+            level = max(above)
+            pieces = zip(*above.pop(level), strict=True)
+            row, node, parent, slope = (np.concatenate(column) for column in pieces)
             second = node if level else self._operands[node, 0].astype(np.intp)
             key = row * max(count, width) + second
             order = np.argsort(key, kind="stable")
@@ -409,12 +412,13 @@ class ArrayFreezing:
             low = high
         return _Layout(steps, np.concatenate(visited_rows), np.concatenate(visited), row, second)
 
-    def _descend(self, above: _Pending, row: Ints, node: Ints, low: int) -> None:
+    def _descend(self, above: dict[int, list[tuple[Ints, ...]]], row: Ints, node: Ints, low: int) -> None:
         """Adds the pairs below those of one level, which are numbered from `low` on."""
         children = self._operands[node]
         at, k = np.nonzero((children >= 0) & self._varies[children])
         child = children[at, k].astype(np.intp)
-        above.add(self._levels[child], row[at], child, low + at, k * len(self.values) + node[at])
+        slope = k * len(self.values) + node[at]
+        _add_by_level(above, self._levels[child], row[at], child, low + at, slope)
 
     def _curved(self, nodes: Ints) -> Bools:
         """Tells whether each node is not an affine function of those of its operands that vary."""
@@ -425,28 +429,12 @@ class ArrayFreezing:
         return curved
 
 
-class _Pending:
-    """Pairs still to be visited, by level: row, node, pair above, place of the slope between them."""
-
-    def __init__(self) -> None:
-        self._levels: dict[int, list[tuple[Ints, ...]]] = {}
-
-    def add(self, levels: NDArray[np.int32], *columns: Ints) -> None:
-        for level in np.flatnonzero(np.bincount(levels)).tolist():
-            members = np.flatnonzero(levels == level)
-            found = columns if len(members) == len(levels) else tuple(column[members] for column in columns)
-            self._levels.setdefault(level, []).append(found)
-
-    def descending(self) -> Iterable[int]:
-        """Returns the levels that are left, from above; taking one may add lower ones."""
-        while self._levels:
-            yield max(self._levels)
-
-    def take(self, level: int) -> tuple[Ints, ...]:
-        pieces = self._levels.pop(level)
-        if len(pieces) == 1:
-            return pieces[0]
-        return tuple(np.concatenate(column) for column in zip(*pieces, strict=True))
+def _add_by_level(
+    known: dict[int, list[tuple[Ints, ...]]], levels: NDArray[np.int32], *columns: Ints
+) -> None:
+    for level in np.flatnonzero(np.bincount(levels)).tolist():
+        members = np.flatnonzero(levels == level)
+        known.setdefault(level, []).append(tuple(column[members] for column in columns))
 
 
 def _distinct(numbers: Ints, count: int) -> Ints:

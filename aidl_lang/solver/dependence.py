@@ -2,8 +2,8 @@
 
 Rows are taken in an order of preference. One is dependent if it is a combination of independent rows before
 it; those with coefficients other than zero are the only ones that make it up: none of them can be left out.
-Copies and rows with an unknown of their own are put aside first; of the rest the left null space is reduced,
-latest rows first.
+Rows with an unknown of their own are put aside first; of the rest the left null space is reduced, latest rows
+first.
 
 Gradients tell what happens near by to the first order only: `distance(a, b) == 10` has the gradient of
 `b.x - a.x == 10` where both hold, and yet says more. So a constraint that depends on others by its gradient
@@ -28,8 +28,6 @@ from aidl_lang.solver.valuation import LARGE, Sorted, connected, linearise
 
 OWN = 1e-3
 """Least entry of a unit row by which an unknown of its own makes the row independent beyond doubt."""
-SAME = 1e-9
-"""Difference of entries of unit rows that counts as zero."""
 SHARE = 1e-6
 """Coefficients of unit rows below which they count as zero."""
 MOST = 200
@@ -51,52 +49,18 @@ Relation: TypeAlias = dict[int, float]
 
 def dependent_rows(rows: Sparse, width: int) -> tuple[dict[int, Relation], list[int]]:
     """Returns the relation of each dependent row among unit rows, and the rows that are undecided."""
-    relations = _copies(rows, width)
-    originals = others(len(rows), relations)
-    matrix = rows.take(originals)
-    rest = _entangled(matrix, width)
+    relations: dict[int, Relation] = {}
+    rest = _entangled(rows, width)
     undecided: list[int] = []
-    for part in _connected_parts(matrix.take(rest), width):
-        names = originals[rest[part]].tolist()
-        found = _relations(matrix.take(rest[part]))
+    for part in _connected_parts(rows.take(rest), width):
+        names = rest[part].tolist()
+        found = _relations(rows.take(rest[part]))
         if found is None:
             undecided += names
             continue
         for row, relation in found.items():
             relations[names[row]] = {names[other]: share for other, share in relation.items()}
-    # A copy of what follows from others follows from these.
-    for row, relation in relations.items():
-        ((first, share), *more) = relation.items()
-        if not more and first in relations:
-            relations[row] = {other: share * part for other, part in relations[first].items()}
     return relations, undecided
-
-
-def _copies(matrix: Sparse, width: int) -> dict[int, Relation]:
-    """Returns the rows that equal an earlier one or its opposite, by a random combination of the columns."""
-    weights = scattered(width)
-    sums = np.abs(np.bincount(matrix.rows, matrix.entries * weights[matrix.columns], len(matrix)))
-    order = np.argsort(sums, kind="stable")
-    alike = np.flatnonzero(np.diff(sums[order]) > SAME) + 1
-    relations: dict[int, Relation] = {}
-    for same in np.split(order, alike) if len(alike) < len(order) - 1 else ():
-        firsts: list[int] = []
-        for row in np.sort(same).tolist():
-            entries = dict(_pairs(matrix, row))
-            for first in firsts:
-                pairs = _pairs(matrix, first)
-                sign = 1.0 if sum(e * entries.get(c, 0.0) for c, e in pairs) > 0.0 else -1.0
-                if all(abs(entries.get(c, 0.0) - sign * e) <= SAME for c, e in pairs):
-                    relations[row] = {first: sign}
-                    break
-            else:
-                firsts.append(row)
-    return relations
-
-
-def _pairs(matrix: Sparse, row: int) -> list[tuple[int, float]]:
-    here = slice(matrix.starts[row], matrix.starts[row + 1])
-    return list(zip(matrix.columns[here].tolist(), matrix.entries[here].tolist(), strict=True))
 
 
 def _entangled(matrix: Sparse, width: int) -> Ints:

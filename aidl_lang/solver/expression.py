@@ -192,26 +192,13 @@ def _finite(d: float) -> float:
     return d if math.isfinite(d) else 0.0
 
 
-def _d_power(a: float, b: float, value: float) -> tuple[float, float]:
-    return _finite(b * _power(a, b - 1.0)), _finite(value * math.log(a)) if a > 0.0 else 0.0
-
-
 def _d_inverse_trig(a: float, sign: float) -> float:
     cosine = math.sqrt(max(1.0 - a * a, 0.0)) if a == a else 1.0
     return sign / max(cosine, 1.0 / STEEPEST)
 
 
-def _d_atan2(y: float, x: float, _: float) -> tuple[float, float]:
-    square = x * x + y * y
-    if square == 0.0:
-        return 1.0, 0.0
-    return _finite(x / square), _finite(-y / square)
-
-
-def _d_hypot(a: float, b: float, length: float) -> tuple[float, float]:
-    if length == 0.0:
-        return 1.0, 0.0
-    return _finite(a / length), _finite(b / length)
+def _parts_of(whole: float, a: float, b: float) -> tuple[float, float]:
+    return (_finite(a / whole), _finite(b / whole)) if whole != 0.0 else (1.0, 0.0)
 
 
 PARTIALS: dict[int, Callable[..., tuple[float, ...]]] = {
@@ -220,17 +207,20 @@ PARTIALS: dict[int, Callable[..., tuple[float, ...]]] = {
     Op.NEG: lambda a, b, _: (-1.0, 0.0),
     Op.MUL: lambda a, b, _: (_finite(b), _finite(a)),
     Op.DIV: lambda a, b, _: (_finite(_div(1.0, b)), _finite(_div(-a, b * b))),
-    Op.POWER: _d_power,
+    Op.POWER: lambda a, b, value: (
+        _finite(b * _power(a, b - 1.0)),
+        _finite(value * math.log(a)) if a > 0.0 else 0.0,
+    ),
     Op.SIN: lambda a, b, _: (_finite(math.cos(a)) if math.isfinite(a) else 0.0, 0.0),
     Op.COS: lambda a, b, _: (-math.sin(a) if math.isfinite(a) else 0.0, 0.0),
     Op.TAN: lambda a, b, value: (_finite(1.0 + value * value), 0.0),
     Op.ASIN: lambda a, b, _: (_d_inverse_trig(a, 1.0), 0.0),
     Op.ACOS: lambda a, b, _: (_d_inverse_trig(a, -1.0), 0.0),
-    Op.ATAN2: _d_atan2,
+    Op.ATAN2: lambda y, x, _: _parts_of(x * x + y * y, x, -y),
     Op.SQRT: lambda a, b, root: (0.5 / root if root > 0.0 else 1.0, 0.0),
     Op.ABS: lambda a, b, _: (-1.0 if a < 0.0 else 1.0, 0.0),
     Op.SQUARE: lambda a, b, _: (_finite(2.0 * a), 0.0),
-    Op.HYPOT: _d_hypot,
+    Op.HYPOT: lambda a, b, length: _parts_of(length, a, b),
     Op.MINIMUM: lambda a, b, _: (1.0, 0.0) if a <= b else (0.0, 1.0),
     Op.MAXIMUM: lambda a, b, _: (1.0, 0.0) if a >= b else (0.0, 1.0),
     Op.MOD: lambda a, b, _: (1.0, _finite(-whole_turns(a, b))),
@@ -261,15 +251,9 @@ def _each(operands: tuple[Floats, ...]) -> Iterable[tuple[float, ...]]:
     return zip(*(a.tolist() for a in (operands if len(operands) > 1 else operands * 2)), strict=True)
 
 
-def _over_square(y: Floats, x: Floats, _: Floats) -> tuple[Floats, Floats]:
-    square = x * x + y * y
-    singular = square == 0.0
-    return np.where(singular, 1.0, x / square), np.where(singular, 0.0, -y / square)
-
-
-def _over_length(a: Floats, b: Floats, length: Floats) -> tuple[Floats, Floats]:
-    singular = length == 0.0
-    return np.where(singular, 1.0, a / length), np.where(singular, 0.0, b / length)
+def _each_part_of(whole: Floats, a: Floats, b: Floats) -> tuple[Floats, Floats]:
+    singular = whole == 0.0
+    return np.where(singular, 1.0, a / whole), np.where(singular, 0.0, b / whole)
 
 
 def _select(condition: Floats, a: Floats, b: Floats) -> Floats:
@@ -302,10 +286,10 @@ _SLOPES: dict[int, Callable[..., tuple[Floats, ...]]] = {
     Op.DIV: lambda a, b, _: (1.0 / b, -a / (b * b)),
     Op.SIN: lambda a, _: (np.cos(a),),
     Op.COS: lambda a, _: (-np.sin(a),),
-    Op.ATAN2: _over_square,
+    Op.ATAN2: lambda y, x, _: _each_part_of(x * x + y * y, x, -y),
     Op.SQRT: lambda _, root: (np.where(root > 0.0, 0.5 / root, 1.0),),
     Op.SQUARE: lambda a, _: (2.0 * a,),
-    Op.HYPOT: _over_length,
+    Op.HYPOT: lambda a, b, length: _each_part_of(length, a, b),
     IDENTITY: lambda a, _: (np.ones_like(a),),
 }
 """Branching operations are not here: before they are differentiated a branch is chosen."""
@@ -514,12 +498,10 @@ class TapeBuilder:
         if common:
             return self._sum(common, self._extremum(op, rests))
         while len(level) > 1:
-            pairs = [self._extreme(op, *level[i : i + 2]) for i in range(0, len(level) - 1, 2)]
-            level = pairs + level[len(pairs) * 2 :]
+            pairs = [sorted(level[i : i + 2]) for i in range(0, len(level) - 1, 2)]
+            made = [a if a == b else self._node(op, a, b) for a, b in pairs]
+            level = made + level[len(pairs) * 2 :]
         return level[0]
-
-    def _extreme(self, op: int, a: int, b: int) -> int:
-        return a if a == b else self._node(op, min(a, b), max(a, b))
 
     # -- shifts
 

@@ -240,7 +240,8 @@ class Choice:
         form = branched(op, parts) if op in BRANCHING else applied(op, parts)
         if form is None and op in BRANCHING and self.freezer.pruning:
             choice = self.chosen[slot] = self._choice(knot)
-            form, hangs = self._taken(op, parts, choice), True
+            hangs, form = True, parts[0 if op == Op.ABS else choice]
+            form = scaled(form, -1.0) if op == Op.ABS and choice else form
         elif form is None:
             operands = tuple([self._slot(part) for part in parts])
             form = Affine({self._new(op, operands): 1.0}, 0.0)
@@ -263,11 +264,6 @@ class Choice:
         if knot.node in self.flipped:
             choice = 1 - choice
         return choice + 1 if knot.op == Op.SELECT else choice
-
-    def _taken(self, op: int, parts: Sequence[Form], choice: int) -> Form:
-        if op != Op.ABS:
-            return parts[choice]
-        return scaled(parts[0], -1.0) if choice else parts[0]
 
     # -- recipes
 

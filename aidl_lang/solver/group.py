@@ -329,17 +329,13 @@ def prefer(hierarchy: Hierarchy, scope: Scope, soft: tuple[int, ...]) -> bool:
     verdict = attempt(task, hierarchy.values, hierarchy.metric, hierarchy.settings, hierarchy.clock)
     if not verdict.satisfied or not _cost(hierarchy, soft) < cost:
         hierarchy.values.assign(before.items())
-    else:
-        _meet_exactly(hierarchy, scope, hard, soft)
-    return False
-
-
-def _meet_exactly(hierarchy: Hierarchy, scope: Scope, hard: list[int], soft: tuple[int, ...]) -> None:
-    """Makes the preferences exact that hold but for the give of their slack."""
+        return False
+    # Those that hold but for the give of their slack are made exact.
     nearly = [index for index in soft if _cost(hierarchy, (index,)) < NEARLY**2]
     reached = hierarchy.save(scope.free)
     if not hierarchy.attempt(replace(scope, constraints=tuple(sorted([*hard, *nearly]))), 0).satisfied:
         hierarchy.values.assign(reached.items())
+    return False
 
 
 def _cost(hierarchy: Hierarchy, soft: tuple[int, ...]) -> float:

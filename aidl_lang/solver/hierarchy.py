@@ -20,7 +20,7 @@ from aidl_lang.solver.branches import Metric, Task, Verdict, attempt, holds
 from aidl_lang.solver.expression import Bools, Floats, Ints, Op, mentioned
 from aidl_lang.solver.group import Group
 from aidl_lang.solver.linear import Sparse, each_once
-from aidl_lang.solver.loosening import OWN, SEALED, Scope, Tier
+from aidl_lang.solver.loosening import Scope, Tier, tiers_at
 from aidl_lang.solver.newton import Clock
 from aidl_lang.solver.problem import (
     GroupFailure,
@@ -73,19 +73,10 @@ class Hierarchy:
         self.is_spanned: list[bool] = problem.spanned.tolist()
         """Tells of each unknown whether it is a size that was read off two places."""
         self.is_hard: list[bool] = np.isnan(problem.weight).tolist()
-        self._is_frame: list[bool] = (problem.frame_of >= 0).tolist()
-        self._is_standing: list[bool] = problem.standing.tolist()
-        self._sealed: list[int] = problem.sealed.tolist()
-        self._depth: list[int] = self._group_depths[problem.group].tolist()
 
     @cached_property
-    def _rides(self) -> list[int]:
-        """The depth, for each unknown, of the innermost group around it (or of the group whose frame it
-        places) that no constraint around that group names: for groups above that depth it rides along with
-        its parent. 0 if all are named.
-        """
-        rides: list[int] = riding_depths(self.problem, self._group_depths).tolist()
-        return rides
+    def _rides(self) -> Ints:
+        return riding_depths(self.problem, self._group_depths)
 
     @cached_property
     def held_by(self) -> dict[int, list[int]]:
@@ -187,29 +178,14 @@ class Hierarchy:
 
     # -- questions of the groups
 
-    def tier(self, group: int, unknown: int, placed: Mapping[int, int]) -> Tier:
-        """Returns the tier of `unknown` at `group`, whose constraints place `placed`."""
-        depth = int(self._group_depths[group])
-        level = self._depth[unknown] - depth
-        if self._sealed[unknown] > depth:
-            return SEALED
-        match self.settings.stages:
-            case Stages.FLAT:
-                return OWN
-            case Stages.PAPER if self._is_frame[unknown]:
-                return (3, 1 + level)
-            case Stages.PAPER:
-                return (4, level) if level else OWN
-        if self.is_kept[unknown]:
-            if self.is_spanned[unknown] and unknown in placed:
-                return (4, level) if level else (1, 2)
-            return (6, 0 if unknown in placed else 1 + level)
-        if self._rides[unknown] > depth:
-            return (5, level)
-        if level == 0:
-            return (1, placed[unknown]) if unknown in placed else (2, int(self._is_standing[unknown]))
-        is_translated = self._is_frame[unknown] and self.settings.stages is not Stages.LEVEL
-        return (3, level) if is_translated else (4, level)
+    def tiers(self, group: int, placed: Mapping[int, int]) -> list[int]:
+        """Returns the tiers of all unknowns at `group`, whose constraints place `placed`, as numbers."""
+        at, problem = np.full(len(self.reached), -1), self.problem
+        at[list(placed)] = list(placed.values())
+        around, stages = self._group_depths, self.settings.stages
+        depth, depths = int(around[group]), around[problem.group]
+        found: list[int] = tiers_at(depth, problem, depths, self._rides, at, stages).tolist()
+        return found
 
     def solved_mentioning(self, unknown: int, group: int) -> Iterable[int]:
         """Yields the constraints of `group` and below it that mention an unknown, without those not met."""
@@ -424,7 +400,12 @@ def groups_riding(problem: Problem) -> Riding:
     movable &= problem.sealed == 0
     carried = ~named.frames & problem.named
     carried[0] = False
-    return Riding(carried, _anchors(problem, carried), movable)
+    clinging = problem.clinging or frozenset()
+    anchor = np.zeros(len(carried), dtype=np.intp)
+    for group, parent in enumerate(problem.parent.tolist()):
+        if group:
+            anchor[group] = group if carried[group] and group in clinging else anchor[parent]
+    return Riding(carried, anchor, movable)
 
 
 def _stirred(problem: Problem, named: Naming, movable: Bools) -> Bools:
@@ -438,15 +419,6 @@ def _stirred(problem: Problem, named: Naming, movable: Bools) -> Bools:
     is_content = (problem.frame_of < 0) & ~problem.kept & named.whole[problem.group]
     found: Bools = is_content & ~shifts[axis, problem.group]
     return found
-
-
-def _anchors(problem: Problem, carried: Bools) -> Ints:
-    clinging = problem.clinging or frozenset()
-    anchor = np.zeros(len(carried), dtype=np.intp)
-    for group, parent in enumerate(problem.parent.tolist()):
-        if group:
-            anchor[group] = group if carried[group] and group in clinging else anchor[parent]
-    return anchor
 
 
 @record()

@@ -27,7 +27,7 @@ from aidl_lang.solver.branches import TIGHTER, Metric
 from aidl_lang.solver.expression import Bools, Floats, Ints
 from aidl_lang.solver.hierarchy import riding_depths
 from aidl_lang.solver.linear import each_once, stacked_least_norm
-from aidl_lang.solver.loosening import MOST, NAMES, STILL, Tier, stage_name
+from aidl_lang.solver.loosening import DEPTHS, MOST, STILL, Tier, stage_name, tiers_at
 from aidl_lang.solver.newton import GAIN, POLISHED, Clock, End, System
 from aidl_lang.solver.problem import Problem, Settings, StageReport, depths, violations
 from aidl_lang.solver.valuation import Sorted, components
@@ -40,10 +40,7 @@ STEPS = 80
 """Evaluations of all stacked systems, at the most."""
 PULLING = 1e-9
 """Part of the greatest multiplier by which another may have the wrong sign through rounding."""
-KINDS = {name: kind for kind, name in NAMES.items()}
-DEPTHS = 1 << 20
-"""The factor by which a tier (kind, level) becomes one number: kind * DEPTHS + level."""
-STANDING = KINDS["own"] * DEPTHS + 1
+STANDING = 2 * DEPTHS + 1
 """The first tier whose members give way only if they have to, and are reported then."""
 
 
@@ -157,23 +154,14 @@ class Levels:
     def _tiers(self, depth: int, held: Bools) -> Ints:
         """Returns the tier (see `loosening`) of each unknown (n,) below a group at `depth`, as one number."""
         problem = self.problem
-        level = self._unknown_depth - depth
-        pairs = self.problem.placed[:, held[problem.placed[0]]]
+        pairs = problem.placed[:, held[problem.placed[0]]]
         width = len(self.x)
-        placed = np.zeros(width, dtype=np.bool_)
+        placed = np.full(width, -1)
         if pairs.size and len(self._pairs):
             wanted = pairs[0].astype(np.int64) * width + pairs[1]
             nearest = np.minimum(np.searchsorted(self._pairs, wanted), len(self._pairs) - 1)
-            placed[pairs[1, self._pairs[nearest] == wanted]] = True
-        kind = np.where(problem.frame_of >= 0, KINDS["translations"], KINDS["positions"])
-        kind = np.where(level == 0, np.where(placed, KINDS["placed"], KINDS["own"]), kind)
-        tier = kind * DEPTHS + np.where(level == 0, problem.standing & ~placed, level)
-        tier = np.where(self._rides > depth, KINDS["riding"] * DEPTHS + level, tier)
-        sizes = KINDS["sizes"] * DEPTHS + np.where(placed, 0, 1 + level)
-        tier = np.where(problem.kept, sizes, tier)
-        span = np.where(level == 0, KINDS["placed"] * DEPTHS + 2, KINDS["positions"] * DEPTHS + level)
-        tier = np.where(problem.spanned & placed, span, tier)
-        return np.where((level < 0) | (problem.sealed > depth), (KINDS["sizes"] + 1) * DEPTHS, tier)
+            placed[pairs[1, self._pairs[nearest] == wanted]] = 0
+        return tiers_at(depth, problem, self._unknown_depth, self._rides, placed)
 
     def _promising(self, violated: Bools, of_constraint: Ints, free: Bools, parts: int) -> Bools:
         """Returns the mask of parts (p,) that have something free in every violated constraint."""

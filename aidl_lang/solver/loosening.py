@@ -22,9 +22,10 @@ from typing import TYPE_CHECKING, TypeAlias
 import numpy as np
 
 from aidl_lang.common.records import record
+from aidl_lang.solver import Stages
 from aidl_lang.solver.expression import Floats, Ints
 from aidl_lang.solver.freezing import Freezer
-from aidl_lang.solver.problem import Relation
+from aidl_lang.solver.problem import Problem, Relation
 from aidl_lang.solver.valuation import FLAT, gradients
 
 if TYPE_CHECKING:
@@ -56,6 +57,34 @@ ENDLESS: Tier = (9, 0)
 SEALED: Tier = (9, 1)
 
 NAMES = {1: "placed", 2: "own", 3: "translations", 4: "positions", 5: "riding", 6: "sizes"}
+DEPTHS = 1 << 20
+"""The factor by which a tier (kind, level) becomes one number: kind * DEPTHS + level."""
+
+
+def tiers_at(
+    depth: int, problem: Problem, depths: Ints, rides: Ints, placed: Ints, stages: Stages = Stages.FULL
+) -> Ints:
+    """Returns the tier of each unknown (n,) below a group at `depth`, as one number.
+
+    depths  (n,) those of the groups that own them
+    rides   (n,) the depth above which each rides along
+    placed  (n,) the level of those that constraints of the group place; -1 for others
+    """
+    level, is_frame, is_placed = depths - depth, problem.frame_of >= 0, placed >= 0
+    if stages is Stages.FLAT:
+        found = np.full(len(level), 2 * DEPTHS)
+    elif stages is Stages.PAPER:
+        inside = np.where(level > 0, 4, 2) * DEPTHS + level
+        found = np.where(is_frame, 3 * DEPTHS + 1 + level, inside)
+    else:
+        own = np.where(is_placed, DEPTHS + placed, 2 * DEPTHS + problem.standing)
+        inside = np.where(is_frame & (stages is not Stages.LEVEL), 3, 4) * DEPTHS + level
+        found = np.where(level == 0, own, inside)
+        found = np.where(rides > depth, 5 * DEPTHS + level, found)
+        spans = np.where(level == 0, DEPTHS + 2, 4 * DEPTHS + level)
+        sizes = np.where(problem.spanned & is_placed, spans, 6 * DEPTHS + np.where(is_placed, 0, 1 + level))
+        found = np.where(problem.kept, sizes, found)
+    return np.where((level < 0) | (problem.sealed > depth), SEALED[0] * DEPTHS + SEALED[1], found)
 
 
 def stage_name(tier: Tier) -> str:
@@ -85,7 +114,8 @@ class Tiers:
         self.hierarchy, self.group = hierarchy, group
         self.placed: Mapping[int, int] = {}
         """The own positions and sizes that constraints place, with 0, or 1 if only bounds that hold would."""
-        self._known: dict[int, Tier] = {}
+        self._codes: list[int] | None = None
+        """The tiers as numbers, once one is asked for."""
         self._everything: dict[tuple[int, ...], Scope] = {}
         """The scope with all unknowns free, by the constraints that are to hold."""
 
@@ -105,13 +135,12 @@ class Tiers:
             for unknown in constraints[index].placed & reached:
                 found[unknown] = min(level, found.get(unknown, level))
         self.placed = found
-        self._known.clear()
+        self._codes = None
 
     def tier(self, unknown: int) -> Tier:
-        found = self._known.get(unknown)
-        if found is None:
-            found = self._known[unknown] = self.hierarchy.tier(self.group, unknown, self.placed)
-        return found
+        if self._codes is None:
+            self._codes = self.hierarchy.tiers(self.group, self.placed)
+        return divmod(self._codes[unknown], DEPTHS)
 
     def scope(self, last: Tier, seeds: Iterable[int], further: Collection[int] = ()) -> Scope:
         """Returns the closure of `seeds`: the unknowns up to tier `last`, or in `further`, that they mention,

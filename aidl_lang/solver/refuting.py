@@ -73,14 +73,10 @@ class Relaxation:
         self.bends = any(self._forms.knots[slot].op not in BRANCHING for slot in self._parts)
         """True if something in the rows neither is affine nor chooses."""
 
-    def refutation(self, among: Iterable[int]) -> Mapping[int, float]:
-        """Returns factors of some of the rows `among`, by number, that add up to what cannot be; or none."""
-        return self._refuted(list(among)).factors
-
     @property
     def is_refuted(self) -> bool:
         """True if a proof exists that the rows cannot hold together."""
-        return bool(self.refutation(self._all))
+        return bool(self._refuted(self._all).factors)
 
     def lack(self) -> float:
         """Returns how far off the sum is that refutes the rows, its greatest factor as 1; 0 if none does."""
@@ -93,6 +89,7 @@ class Relaxation:
         return {i: found.off / factor for i, factor in found.factors.items()} if found.is_even else {}
 
     def _refuted(self, numbers: list[int]) -> _Refutation:
+        """Returns factors of some rows, by number, that add up to what cannot be; or none."""
         system = [(form, row.relation is Relation.EQUAL) for form, row in (self._rows[i] for i in numbers)]
         system += [(bound, False) for bound in self._bounds(form for form, _ in system)]
         if len(system) > MANY:
@@ -111,9 +108,9 @@ class Relaxation:
 
     def smallest(self) -> list[int]:
         """Returns a smallest set of rows that is refuted; empty if the rows are not refuted."""
-        found = list(self.refutation(self._all))
+        found = list(self._refuted(self._all).factors)
         for number in list(found):
-            if number in found and (fewer := self.refutation(n for n in found if n != number)):
+            if number in found and (fewer := self._refuted([n for n in found if n != number]).factors):
                 found = list(fewer)
         return found
 

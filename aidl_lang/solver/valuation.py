@@ -96,15 +96,14 @@ class Valuation:
         if found is None:
             if len(self._cones) >= CONES:
                 self._cones.clear()
-            found = self._cones[wanted] = self._find_cone(wanted)
+            ops, operands, still = self.tape.op_list, self.tape.operand_lists, self.still()
+            nodes = below(self.tape, wanted, still)
+            moving = [node for node in nodes if not still[node]]
+            inputs = [(node, operands[node][0]) for node in moving if ops[node] == Op.UNKNOWN]
+            code = [self._compiled(node) for node in moving if ops[node] > Op.UNKNOWN]
+            ends = [node for node in nodes if still[node] and ops[node] != Op.CONSTANT]
+            found = self._cones[wanted] = Cone(wanted, inputs, code, ends)
         return found
-
-    def _find_cone(self, roots: tuple[int, ...]) -> Cone:
-        ops, operands, still = self.tape.op_list, self.tape.operand_lists, self.still()
-        nodes = below(self.tape, roots, still)
-        inputs = [(node, operands[node][0]) for node in nodes if ops[node] == Op.UNKNOWN and not still[node]]
-        code = [self._compiled(node) for node in nodes if ops[node] > Op.UNKNOWN and not still[node]]
-        return Cone(roots, inputs, code, [node for node in nodes if still[node] and ops[node] != Op.CONSTANT])
 
     def _compiled(self, node: int) -> Compiled:
         code = self._code[node]
@@ -317,7 +316,7 @@ def applied(op: int, parts: Sequence[Form]) -> Form | None:
         return scaled(first, -1.0)
     numbers = [part for part in parts if isinstance(part, float)]
     if len(numbers) == len(parts):
-        return evaluate(op, numbers)
+        return VALUE[op](*numbers) if len(numbers) > 1 else VALUE[op](numbers[0], numbers[0])
     if op == Op.MUL and numbers and math.isfinite(numbers[0]):
         return scaled(last if isinstance(first, float) else first, numbers[0])
     if op == Op.DIV and isinstance(last, float) and last != 0.0 and math.isfinite(1.0 / last):
@@ -341,11 +340,6 @@ def branched(op: int, parts: Sequence[Form]) -> Form | None:
     if ahead != ahead:
         return ahead
     return parts[0] if (ahead <= 0.0) == (op == Op.MINIMUM) else parts[1]
-
-
-def evaluate(op: int, operands: Sequence[float]) -> float:
-    """Returns the value of one operation on numbers."""
-    return VALUE[op](*operands) if len(operands) > 1 else VALUE[op](operands[0], operands[0])
 
 
 # --- Gradients of many nodes at one place, as sparse matrices; these in their connected parts.
@@ -438,22 +432,18 @@ def linearise(tape: Tape, at: Floats, roots: Ints, among: Bools | None = None) -
         counts = np.array([len(found[root]) for root in wanted], dtype=np.intp)
         matrix = Sparse(starts_of(counts), columns, slopes)
     else:
-        values, matrix = _all_at_once(tape, at, roots, among)
+        schedule = Schedule(tape)
+        nodes = schedule.evaluate(at)
+        free = np.ones(len(at), dtype=np.bool_) if among is None else among
+        freezing = ArrayFreezing(schedule, nodes, free)
+        counts = np.zeros(len(roots), dtype=np.intp)
+        varying = np.flatnonzero(freezing.varies(roots))
+        program = freezing.program(roots[varying])
+        counts[varying] = np.diff(program.indptr)
+        values, columns = nodes[roots], program.columns[program.indices]
+        matrix = Sparse(starts_of(counts), columns, program.entries())
     sensible = np.abs(matrix.entries) < STEEPEST  # not for those that are not numbers
     return values, replace(matrix, entries=np.where(sensible, matrix.entries, 0.0))
-
-
-def _all_at_once(tape: Tape, at: Floats, roots: Ints, among: Bools | None) -> tuple[Floats, Sparse]:
-    """Returns the values (r,) of `roots` and their partial derivatives, on arrays."""
-    schedule = Schedule(tape)
-    values = schedule.evaluate(at)
-    free = np.ones(len(at), dtype=np.bool_) if among is None else among
-    freezing = ArrayFreezing(schedule, values, free)
-    counts = np.zeros(len(roots), dtype=np.intp)
-    varying = np.flatnonzero(freezing.varies(roots))
-    program = freezing.program(roots[varying])
-    counts[varying] = np.diff(program.indptr)
-    return values[roots], Sparse(starts_of(counts), program.columns[program.indices], program.entries())
 
 
 # -- connected parts

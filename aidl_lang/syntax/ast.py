@@ -186,25 +186,9 @@ class Conditional(Node):
 
 
 Expression: TypeAlias = (
-    Number
-    | String
-    | Boolean
-    | Name
-    | Member
-    | Index
-    | Call
-    | Point
-    | List
-    | Comprehension
-    | ForArguments
-    | IfArguments
-    | Unary
-    | Binary
-    | Comparison
-    | Membership
-    | Range
-    | Conditional
-)
+    Number | String | Boolean | Name | Member | Index | Call | Point | List | Comprehension | ForArguments
+    | IfArguments | Unary | Binary | Comparison | Membership | Range | Conditional
+)  # fmt: skip
 
 
 class Parameter(Node):
@@ -395,25 +379,9 @@ class Todo(Allowing):
 
 
 Statement: TypeAlias = (
-    Structure
-    | Param
-    | Var
-    | Let
-    | Assign
-    | ExpressionStatement
-    | Constrain
-    | Equation
-    | Prefer
-    | Assert
-    | For
-    | If
-    | Import
-    | FunctionDefinition
-    | ShapeDefinition
-    | ConstraintDefinition
-    | Alias
-    | Todo
-)
+    Structure | Param | Var | Let | Assign | ExpressionStatement | Constrain | Equation | Prefer | Assert
+    | For | If | Import | FunctionDefinition | ShapeDefinition | ConstraintDefinition | Alias | Todo
+)  # fmt: skip
 
 DEFINITIONS = (Import, Param, Let, Alias, FunctionDefinition, ShapeDefinition, ConstraintDefinition, Todo)
 """Statements that may stand beside the one structure of a file without making an assembly around both."""

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from copy import copy
+from difflib import SequenceMatcher
 from functools import cached_property, partial
 from typing import Any, NamedTuple
 
@@ -17,7 +18,7 @@ from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix, Label
 from aidl_lang.common.records import record
 from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.syntax import ast
-from aidl_lang.syntax.tables import END, STATEMENT_WORDS, Reduced, Token, load_tables
+from aidl_lang.syntax.tables import END, STATEMENT_WORDS, Reduced, Token, load_tables, tokenize
 
 # --- Lark's parser at a place in a text, with what recovery asks of it and does to its stacks.
 
@@ -298,11 +299,16 @@ def wrong(
     fix: Fix | None = None,
     hints: tuple[str, ...] = (),
     repair: TokenRepair | None = None,
+    tokens: Sequence[Token] = (),
     with_block: bool = False,
 ) -> SyntaxProblem:
-    """Returns a problem; with what is `right`, the fix writes that."""
+    """Returns a problem; with what is `right`, the fix writes that. With the `tokens` of the text, these are
+    read as the fix writes them.
+    """
     if right is not None:
         fix = replaced(f"write `{right}`", span, right)
+    if tokens and fix is not None:
+        repair = reread(tokens, fix)
     diagnostic = Diagnostic(code, message, span, label, secondary, hints, fix)
     return SyntaxProblem(diagnostic, repair, with_block)
 
@@ -310,6 +316,28 @@ def wrong(
 def replaced(title: str, span: Span, text: str, *, is_sure: bool = True) -> Fix:
     """Returns the fix that replaces a text; `is_sure` if nothing else can have been meant."""
     return Fix(title, (Edit(span, text),), is_sure)
+
+
+def reread(tokens: Sequence[Token], fix: Fix) -> TokenRepair:
+    """Returns the repair that reads what a fix writes: the tokens that it keeps, and new ones in the places
+    of those they stand for.
+    """
+    found: list[Token] = []
+    places: list[int] = []
+    for edit in sorted(fix.edits, key=lambda edit: edit.span.start):
+        low, high = edit.span.start, edit.span.end
+        start = stop = next((n for n, token in enumerate(tokens) if token.end > low), len(tokens) - 1)
+        while tokens[stop].start < high and tokens[stop].end > low:
+            stop += 1
+        found += tokens[places[-1] : start] if places else ()
+        old, new = tokens[start:stop], tokenize(SourceFile("", edit.replacement)).tokens[:-1]
+        alike = SequenceMatcher(None, [k.text for k in old], [k.text for k in new], autojunk=False)
+        for word, i, j, k, m in alike.get_opcodes():
+            around = old[i:j] or old[max(i - 1, 0) : max(i, 1)]
+            place = (around[0].start, around[-1].end) if around else (low, low)
+            found += old[i:j] if word == "equal" else [Token(t.kind, t.text, *place) for t in new[k:m]]
+        places += start, stop
+    return TokenRepair(places[0], places[-1], tuple(found))
 
 
 CLOSE_BLOCK = "close the block"
@@ -335,21 +363,29 @@ def statement_end(source: SourceFile, tokens: Sequence[Token], begin: int) -> in
     return stop
 
 
+def operand_end(tokens: Sequence[Token], at: int, step: int, limit: int, ends: Collection[str] = ()) -> int:
+    """Returns the number of the token at which what stands behind another one (`step` 1) or before it (-1)
+    ends: a bracket around it, or one of the `ends`; the `limit` if there is none before that.
+    """
+    depth, n = 0, at + step
+    while n != limit:
+        deeper = step * tokens[n].nesting
+        if depth == 0 and (deeper < 0 or tokens[n].kind in ends):
+            break
+        depth += deeper
+        n += step
+    return n
+
+
 def closing(tokens: Sequence[Token], opening: int) -> int:
     """Returns the number of the bracket that closes one; -1 if it is missing, or beyond LONGEST tokens."""
-    depth = 0
-    for n in range(opening, min(len(tokens), opening + LONGEST)):
-        depth += tokens[n].nesting
-        if depth == 0:
-            return n
-    return -1
+    limit = min(len(tokens), opening + LONGEST)
+    close = operand_end(tokens, opening, 1, limit)
+    return -1 if close == limit else close
 
 
 def opening(tokens: Sequence[Token], close: int) -> int:
     """Returns the number of the bracket that one closes; its own if that is missing, or too far away."""
-    depth = 0
-    for n in range(close, max(close - LONGEST, -1), -1):
-        depth += tokens[n].nesting
-        if depth == 0:
-            return n
-    return close
+    limit = max(close - LONGEST, -1)
+    found = operand_end(tokens, close, -1, limit)
+    return close if found == limit else found

@@ -4,7 +4,8 @@ about what is missing, left over or in the wrong place are here.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
+from itertools import count, takewhile
 
 from aidl_lang.common.diagnostics import Edit, Fix, Label
 from aidl_lang.common.prose import listed
@@ -19,6 +20,7 @@ from aidl_lang.syntax.automaton import (
     closing,
     line_end,
     opening,
+    operand_end,
     replaced,
     wrong,
 )
@@ -36,6 +38,8 @@ from aidl_lang.syntax.tree import out_of_place
 
 # --- Placements in lists and arguments, where none can stand.
 
+_ITEM_ENDS = (",", "for")
+
 
 def placement_in_expression(t: Trouble) -> SyntaxProblem | None:
     """Recognises `[rib(h: 6) at (8, 8), …]`, `mirror(rib() at (8, 8), …)`."""
@@ -45,54 +49,36 @@ def placement_in_expression(t: Trouble) -> SyntaxProblem | None:
     close = closing(t.tokens, begin)
     if close < t.position or t.tokens[close].kind != ("]" if t.open[-1].kind == "[" else ")"):
         return None
-    listed = _as_members(t, begin, close)
-    stop = _item_end(t.tokens, t.position, close)
+    stop = operand_end(t.tokens, t.position - 1, 1, close, _ITEM_ENDS)
     call = f"{t.tokens[opening(t.tokens, t.position - 1)].text}…) {t.token.kind} …"
     hint = f"give the part a name of its own: `part = {call}`"
     if t.tokens[stop].kind == "for":
         hint = f"give each part a name in a loop: `for i in 0..3 {{ part[i] = {call} }}`"
-    fix, repair = listed or (None, TokenRepair(t.position, stop))
     message = f"`{t.token.kind}` stands behind a definition, not inside an expression"
     span = t.span(to=t.tokens[stop - 1])
-    return wrong("E0126", message, span, fix=fix, hints=(hint,) if fix is None else (), repair=repair)
+    if (fix := _as_members(t, begin, close)) is not None:
+        return wrong("E0126", message, span, fix=fix, tokens=t.tokens)
+    return wrong("E0126", message, span, hints=(hint,), repair=TokenRepair(t.position, stop))
 
 
-def _as_members(t: Trouble, opening: int, close: int) -> tuple[Fix, TokenRepair] | None:
-    """Returns fix and repair that write `ribs = [a() at p, b()]` as `ribs[0] = a() at p`, `ribs[1] = b()`."""
+def _as_members(t: Trouble, opening: int, close: int) -> Fix | None:
+    """Returns the fix that writes `ribs = [a() at p, b()]` as `ribs[0] = a() at p`, `ribs[1] = b()`."""
     name, after = t.first, t.tokens[close + 1]
     is_list = [token.kind for token in t.tokens[t.begin : opening + 1]] == ["NAME", "=", "["]
     is_last = after.kind in ("}", ";", END) or begins_line(t.source.text, after.start)
     whole = t.span(name, t.tokens[close])
     if not (is_list and is_last) or any(sign in whole.text for sign in ("//", "/*", "#")):
         return None
-    items: list[Sequence[Token]] = []
+    lines: list[str] = []
     start = opening + 1
     while start < close:
-        stop = _item_end(t.tokens, start, close)
+        stop = operand_end(t.tokens, start - 1, 1, close, _ITEM_ENDS)
         if t.tokens[stop].kind == "for" or stop == start:
             return None
-        items.append(t.tokens[start:stop])
+        lines.append(f"{name.text}[{len(lines)}] = {t.span(t.tokens[start], t.tokens[stop - 1]).text}")
         start = stop + 1
-    lines, tokens = [], list[Token]()
-    for i, item in enumerate(items):
-        at = item[0].start, item[0].start
-        own = name if i == 0 else Token(name.kind, name.text, *at)
-        index = Token("[", "[", *at), Token("NUMBER", str(i), *at), Token("]", "]", *at), Token("=", "=", *at)
-        tokens += [own, *index, *item]
-        lines.append(f"{name.text}[{i}] = {Span(t.source, item[0].start, item[-1].end).text}")
     text = ("\n" + " " * t.indentation(name.start)).join(lines)
-    fix = replaced("give each its own line", whole, text)
-    return fix, TokenRepair(t.begin, close + 1, tuple(tokens))
-
-
-def _item_end(tokens: Sequence[Token], start: int, close: int) -> int:
-    """Returns the number of the `,` or `for` behind an item, or of the bracket that closes the list."""
-    depth = 0
-    for n in range(start, close):
-        if depth == 0 and tokens[n].kind in (",", "for"):
-            return n
-        depth += tokens[n].nesting
-    return close
+    return replaced("give each its own line", whole, text)
 
 
 _EXAMPLE_VALUE = {"param": "80", "var": "5", "let": "w / 2"}
@@ -126,8 +112,7 @@ def colon_for_equals(t: Trouble) -> SyntaxProblem | None:
         message = f"`{t.first.text}` takes no type: its value tells"
         fix = replaced("remove the type", Span(t.source, t.gap().start, t.following.end), "")
         hint = "write the unit with the number: `80mm`, `30deg`"
-        repair = TokenRepair(t.position, t.position + 2)
-        return wrong("E0109", message, t.span(t.token, t.following), fix=fix, hints=(hint,), repair=repair)
+        return wrong("E0109", message, t.span(to=t.following), fix=fix, hints=(hint,), tokens=t.tokens)
     message = "a name is given its value by `=`, not `:`"
     fix = replaced("write `=`", Span(t.source, t.gap().start, t.token.end), " =")
     return wrong("E0109", message, t.span(), fix=fix, repair=t.exchanged("="))
@@ -222,21 +207,13 @@ def nameless_structure(t: Trouble) -> SyntaxProblem | None:
         return wrong("E0116", message, t.span(), right=name, repair=repair)
     if t.token.kind not in ("{", "at", "rotated") or not (kind_of(word) or t.token.kind == "{"):
         return None
-    name = _fresh_name(t, word)
+    taken = {token.text for token in t.tokens if token.kind == "NAME"}
+    name = next(free for n in count(1) if (free := f"{word}_{n}") not in taken)
     article = "an" if word[0] in "aeiou" else "a"
     message = f"{article} `{word}` needs a name: `{word} {name} {{ … }}`"
     label, hints = "the name is missing", ("constraints and other parts speak of it by its name",)
     fix = replaced(f"name it `{name}`", t.gap(), f" {name}")
-    repair = TokenRepair(t.position, t.position, (t.token_here("NAME", name),))
-    return wrong("E0116", message, t.span(t.first), label, fix=fix, hints=hints, repair=repair)
-
-
-def _fresh_name(t: Trouble, word: str) -> str:
-    taken = {token.text for token in t.tokens if token.kind == "NAME"}
-    number = 1
-    while f"{word}_{number}" in taken:
-        number += 1
-    return f"{word}_{number}"
+    return wrong("E0116", message, t.span(t.first), label, fix=fix, hints=hints, tokens=t.tokens)
 
 
 def missing_block(t: Trouble) -> SyntaxProblem | None:
@@ -329,19 +306,15 @@ def semicolons(t: Trouble) -> SyntaxProblem | None:
     is_written = t.token.kind == ";" == t.span().text  # not put in for a bracket
     if not is_written or not t.open or not t.accepts(","):
         return None
-    end, depth, stop = line_end(t.source.text, t.token.start), 0, t.position
-    while depth >= 0 and stop - t.position < LONGEST:
-        stop += 1
-        token = t.tokens[stop]
-        if token.kind in (END, "}") or token.start >= end:
-            return None
-        depth += token.nesting
-    meant = tuple(k.but(",", ",") if k.kind == ";" else k for k in t.tokens[t.position : stop])
+    stop = operand_end(t.tokens, t.position, 1, min(len(t.tokens) - 1, t.position + LONGEST))
+    end = line_end(t.source.text, t.token.start)
+    if any(k.kind in (END, "}") or k.start >= end for k in t.tokens[t.position : stop + 1]):
+        return None
     edits = tuple(Edit(t.span(k), ",") for k in t.tokens[t.position : stop] if k.kind == ";")
     message = f"{_ITEMS[t.open[-1].kind]} are separated by `,`; a `;` ends a statement"
     label = f"within {_BRACKET[t.open[-1].kind]}"
     fix = Fix("write `,`", edits, is_sure=True)
-    return wrong("E0112", message, t.span(), label, fix=fix, repair=TokenRepair(t.position, stop, meant))
+    return wrong("E0112", message, t.span(), label, fix=fix, tokens=t.tokens)
 
 
 def unclosed_bracket(t: Trouble) -> SyntaxProblem | None:
@@ -433,36 +406,26 @@ def comma_before_block(t: Trouble) -> SyntaxProblem | None:
     """Recognises `path((0, 0) for i in 0..3 { … })`, where the comma before `for` is missing."""
     if t.token.kind != "{" or not t.open or t.open[-1].kind not in ("CALL", "{"):
         return None
-    depth = 0
-    for n in range(t.position - 1, max(t.begin, t.position - LONGEST), -1):
-        token, before = t.tokens[n], t.tokens[n - 1]
-        if token.kind in ("for", "if") and not depth:
-            break
-        depth -= token.nesting
-        if depth < 0:
-            return None
-    else:
-        return None
-    if before.kind not in (*VALUE_ENDS, "STRING"):
+    limit = max(t.begin, t.position - LONGEST)
+    n = operand_end(t.tokens, t.position, -1, limit, ("for", "if"))
+    token, before = t.tokens[n], t.tokens[n - 1]
+    if n <= limit or token.kind not in ("for", "if") or before.kind not in (*VALUE_ENDS, "STRING"):
         return None
     place = Span(t.source, before.end, before.end)
     message = f"expected `,` before a block of arguments that begins with `{token.text}`"
     other = Label(t.span(t.open[-1]), f"in {_BRACKET[t.open[-1].kind]} that begins here")
     fix = replaced("put in `,`", place, ",")
-    repair = TokenRepair(n, n, (Token(",", ",", before.end, before.end),))
-    return wrong("E0112", message, place, "a comma is missing here", (other,), fix=fix, repair=repair)
+    return wrong("E0112", message, place, "a comma is missing here", (other,), fix=fix, tokens=t.tokens)
 
 
 def unclosed_arguments(t: Trouble) -> SyntaxProblem | None:
     """Recognises a block among arguments that is left open where its call is closed."""
     if t.token.kind != ")" or not t.open or t.open[-1].kind != "{":
         return None
-    count = 1
-    while count < len(t.open) and t.open[-count - 1].kind == "{":
-        count += 1
-    if not t.accepts(*"}" * count, ")"):
+    opener, blocks = t.open[-1], takewhile(lambda k: k.kind == "{", reversed(t.open))
+    text = "}" * len(list(blocks))
+    if not t.accepts(*text, ")"):
         return None
-    opener, text = t.open[-1], "}" * count
     fix = replaced(f"put in `{text}`", t.gap(), " " + text)
     return _not_closed(t, opener, text, t.gap(), fix, t.put_in(*text))
 
@@ -491,8 +454,7 @@ def name_in_block(t: Trouble) -> SyntaxProblem | None:
     message = f"a block of arguments makes nothing, and `{name} = …` would"
     fix = replaced("write `let`", place, "let ")
     hint = f"`let {name} = …` names a value for the rest of the block"
-    repair = TokenRepair(t.position - 1, t.position - 1, (Token("let", "let", place.start, place.start),))
-    return wrong("E0119", message, t.span(t.before, t.token), fix=fix, hints=(hint,), repair=repair)
+    return wrong("E0119", message, t.span(t.before, t.token), fix=fix, hints=(hint,), tokens=t.tokens)
 
 
 def three_coordinates(t: Trouble) -> SyntaxProblem | None:

@@ -5,6 +5,7 @@ An expression becomes a `PrintDocument`: text with groups, the bracketed lists t
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 
 from aidl_lang.common.records import record
@@ -241,45 +242,17 @@ def string_text(value: str) -> str:
     return '"' + value.translate(_ESCAPES) + '"'
 
 
+_BEGINS = re.compile(r"[(.]|(?!(?:if|not|true|false)\b)\w")
+"""What an operand begins with that may begin a statement."""
+
+
 def begins_statement(node: ast.Expression) -> bool:
     """Tells whether an expression, as printed, may stand as a statement of its own."""
-    match node:
-        case ast.Binary(operator="and" | "or"):
-            left = _BINARY[node.operator][1]
-            needs_parentheses = isinstance(node.left, ast.Conditional) or (
-                isinstance(node.left, ast.Binary) and _BINARY[node.left.operator][0] < left
-            )
-            return needs_parentheses or begins_statement(node.left)
-        case ast.Comparison():
-            return _begins(node.operands[0], SUM)
-        case ast.Membership():
-            return _begins(node.value, SUM)
-        case ast.Call():
-            return node.receiver is None or _begins(node.receiver, ATOM)
-    return False
-
-
-def _begins(node: ast.Expression, level: int) -> bool:
-    """Tells whether the text of an operand begins with what may begin a statement; parentheses may."""
-    match node:
-        case ast.Name() | ast.Number() | ast.Point():
-            return True
-        case ast.Member() | ast.Index():
-            return _begins(node.value, ATOM)
-        case ast.Call():
-            return node.receiver is None or _begins(node.receiver, ATOM)
-        case ast.Binary():
-            own, left, _ = _BINARY[node.operator]
-            return own < level or _begins(node.left, left)
-        case ast.Unary(operator="not"):
-            return level > NOT
-        case ast.Unary():
-            return level > SIGN
-        case ast.Comparison() | ast.Membership() | ast.Range():
-            return level > CONDITION
-        case ast.Conditional():
-            return level > CHOICE
-    return False
+    if isinstance(node, ast.Binary) and node.operator in ("and", "or"):
+        is_in_parentheses = ExpressionPrinter()._print(node.left)[0] < _BINARY[node.operator][1]
+        return is_in_parentheses or begins_statement(node.left)
+    is_statement = isinstance(node, ast.Comparison | ast.Membership | ast.Call)
+    return is_statement and _BEGINS.match(format_expression(node)) is not None
 
 
 def format_expression(node: ast.Expression, names: Mapping[ast.Node, str] | None = None) -> str:

@@ -17,6 +17,7 @@ from aidl_lang.syntax.automaton import (
     Trouble,
     closing,
     line_end,
+    operand_end,
     replaced,
     statement_end,
     wrong,
@@ -91,35 +92,19 @@ def foreign_loop(t: Trouble) -> SyntaxProblem | None:
         return None
     if found["word"] == "in" and not found["open"]:
         return None  # correct so far: the trouble lies elsewhere
-    start, end = found.start(), found.end("close") if found["close"] else _last(found)
-    if found["list"]:
-        inner, text = _slice(t, *found.span("list")), found["list"]
-    else:
+    end, text = found.end("close") if found["close"] else _last(found), found["list"]
+    if not text:
         low, high = ("a", "b") if found["a"] else ("a3", "b3") if found["a3"] else ("a4", "b4")
-        sign = "..<" if found["op"] in ("<", "!=") else ".."
-        dots = Token(sign, sign, *found.span(high))
-        inner = [*_slice(t, *found.span(low)), dots, *_slice(t, *found.span(high))]
-        text = f"{found[low]}{sign}{found[high]}"
-        by = next((name for name in ("s", "s2", "s3") if found[name]), None)
-        if by:
-            inner += [Token("step", "step", *found.span(by)), *_slice(t, *found.span(by))]
-            text += f" step {found[by]}"
-    right = f"for {found['i']} in {text}"
-    head = [Token("for", "for", start, start + 3), Token("NAME", found["i"], *found.span("i"))]
-    head.append(Token("in", "in", *found.span("i")))
-    stop = next(n for n, token in enumerate(t.tokens) if token.start >= end)
-    span, repair = Span(t.source, start, end), TokenRepair(t.begin, stop, (*head, *inner))
-    return wrong("E0113", f"a loop is written `{right} {{ … }}`", span, right=right, repair=repair)
+        text = f"{found[low]}{'..<' if found['op'] in ('<', '!=') else '..'}{found[high]}"
+        text += "".join(f" step {found[name]}" for name in ("s", "s2", "s3") if found[name])
+    right, span = f"for {found['i']} in {text}", Span(t.source, found.start(), end)
+    return wrong("E0113", f"a loop is written `{right} {{ … }}`", span, right=right, tokens=t.tokens)
 
 
 def _last(found: re.Match[str]) -> int:
     if found["list"] or found["b4"]:
         return max(found.end(name) for name in ("list", "b4"))
     return found.end("b3") + 1
-
-
-def _slice(t: Trouble, start: int, end: int) -> list[Token]:
-    return [token for token in t.tokens if token.start >= start and token.end <= end]
 
 
 def indented_block(t: Trouble) -> SyntaxProblem | None:
@@ -141,14 +126,11 @@ def indented_block(t: Trouble) -> SyntaxProblem | None:
     if not one_line:
         end = line_end(text, end)
         close = Edit(Span(t.source, end, end), "\n" + " " * indentation + "}")
-    end = t.tokens[last].end
-    braces = t.token.but("{", "{"), Token("}", "}", end, end)
     opening = Edit(Span(t.source, t.gap().start, t.token.end), " {")
     message = f"the block of `{t.first.text}` stands in braces, not behind a colon"
     label = "`{` belongs here, and `}` at the end of the block"
     fix = Fix("put the block in braces", (opening, close), is_sure=True)
-    repair = TokenRepair(t.position, last + 1, (braces[0], *t.tokens[t.position + 1 : last + 1], braces[1]))
-    return wrong("E0121", message, t.span(), label, fix=fix, repair=repair)
+    return wrong("E0121", message, t.span(), label, fix=fix, tokens=t.tokens)
 
 
 def object_literal(t: Trouble) -> SyntaxProblem | None:
@@ -176,21 +158,19 @@ def object_literal(t: Trouble) -> SyntaxProblem | None:
     values = [v[:-1] if v and v[-1].kind == "," else v for v in values]
     if not all(values) or not all(name.isidentifier() for name in names):
         return None
-    texts = [Span(t.source, v[0].start, v[-1].end).text for v in values]
-    place = t.token.start, t.token.end
+    texts = [t.span(v[0], v[-1]).text for v in values]
     if [name.lower() for name in names] == ["x", "y"]:
         right, what = f"({texts[0]}, {texts[1]})", "a point"
-        begin, comma, end = (Token(sign, sign, *place) for sign in "(,)")
+        begin, comma, end = (t.token.but(sign, sign) for sign in "(,)")
         tokens = [begin, *values[0], comma, *values[1], end]
     else:
         right = f"record({', '.join(f'{n}: {v}' for n, v in zip(names, texts, strict=True))})"
         what = "a record"
-        tokens = [Token("CALL", "record(", *place)]
-        for n, (key, value) in enumerate(zip(keys, values, strict=True)):
-            name = Token("NAME", names[n], inner[key].start, inner[key].end)
-            tokens += [name, Token(":", ":", *place), *value, Token(",", ",", *place)]
-        tokens.append(Token(")", ")", *place))
-    span, repair = t.span(t.token, t.tokens[close]), TokenRepair(t.position, close + 1, tuple(tokens))
+        tokens = [t.token.but("CALL", "record(")]
+        for name, key, value in zip(names, keys, values, strict=True):
+            tokens += [inner[key].but("NAME", name), t.token.but(":", ":"), *value, t.token.but(",", ",")]
+        tokens.append(t.token.but(")", ")"))
+    span, repair = t.span(to=t.tokens[close]), TokenRepair(t.position, close + 1, tuple(tokens))
     return wrong("E0109", f"{what} is written `{right}`", span, right=right, repair=repair)
 
 
@@ -199,44 +179,28 @@ def _braced_list(t: Trouble, close: int) -> SyntaxProblem:
     depths = accumulate(token.nesting for token in inner)
     commas = sum(token.kind == "," and depth == 0 for token, depth in zip(inner, depths, strict=True))
     what, sides = ("a point", "()") if commas == 1 else ("a list", "[]")
-    begin, end = (token.but(side, side) for token, side in zip((t.token, last), sides, strict=True))
-    places = (Span(t.source, token.start, token.end) for token in (t.token, last))
-    fix = Fix(f"put it in `{sides}`", tuple(map(Edit, places, sides)), is_sure=True)
-    repair = TokenRepair(t.position, close + 1, (begin, *inner, end))
+    fix = Fix(f"put it in `{sides}`", tuple(map(Edit, map(t.span, (t.token, last)), sides)), is_sure=True)
     message = f"{what} stands in `{sides}`, as in `{'(10, 5)' if commas == 1 else '[a, b, c]'}`"
-    return wrong("E0109", message, t.span(t.token, last), fix=fix, repair=repair)
+    return wrong("E0109", message, t.span(t.token, last), fix=fix, tokens=t.tokens)
 
 
 def question_mark(t: Trouble) -> SyntaxProblem | None:
     """Recognises `c ? a : b`."""
     if t.token.text != "?" or t.between:
         return None
-    begin = _operand(t.tokens, t.position, -1, max(t.begin, t.position - LONGEST) - 1) + 1
-    last = min(t.position + LONGEST, len(t.tokens) - 1)
-    colon = _operand(t.tokens, t.position, 1, last)
-    stop = _operand(t.tokens, colon, 1, last) if colon < last else last
+    first, last = max(t.begin, t.position - LONGEST), min(t.position + LONGEST, len(t.tokens) - 1)
+    begin = operand_end(t.tokens, t.position, -1, first - 1, _SEPARATORS) + 1
+    colon = operand_end(t.tokens, t.position, 1, last, _SEPARATORS)
+    stop = operand_end(t.tokens, colon, 1, last, _SEPARATORS) if colon < last else last
     if t.tokens[colon].kind != ":" or begin == t.position or stop <= colon + 1:
         return None
     parts = t.tokens[begin : t.position], t.tokens[t.position + 1 : colon], t.tokens[colon + 1 : stop]
-    texts = [Span(t.source, part[0].start, part[-1].end).text for part in parts]
-    right = f"if {texts[0]} then {texts[1]} else {texts[2]}"
-    places = zip(("if", "then", "else"), (parts[0][0], t.token, t.tokens[colon]), strict=True)
-    words = [Token(word, word, place.start, place.end) for word, place in places]
-    tokens = [token for word, part in zip(words, parts, strict=True) for token in (word, *part)]
-    span, repair = t.span(parts[0][0], parts[2][-1]), TokenRepair(begin, stop, tuple(tokens))
-    return wrong("E0109", f"a choice is written `{right}`", span, right=right, repair=repair)
+    texts = [t.span(part[0], part[-1]).text for part in parts]
+    right, span = f"if {texts[0]} then {texts[1]} else {texts[2]}", t.span(parts[0][0], parts[2][-1])
+    return wrong("E0109", f"a choice is written `{right}`", span, right=right, tokens=t.tokens)
 
 
-def _operand(tokens: Sequence[Token], at: int, step: int, limit: int) -> int:
-    """Returns the number of the token that ends the operand before or behind: a separator or a bracket."""
-    depth, n = 0, at + step
-    while n != limit:
-        deeper = step * tokens[n].nesting
-        if depth == 0 and (deeper < 0 or tokens[n].kind in (",", ";", ":", "=", END)):
-            break
-        depth += deeper
-        n += step
-    return n
+_SEPARATORS = (",", ";", ":", "=", END)
 
 
 def inches(t: Trouble) -> SyntaxProblem | None:
@@ -303,7 +267,7 @@ def import_of_module(t: Trouble) -> SyntaxProblem | None:
     span = t.span(t.first, t.tokens[stop - 1])
     message = f"nothing is imported from `{words[1]}`: functions and shapes are known without it"
     fix = replaced("remove the line", span, "")
-    return wrong("E0113", message, span, fix=fix, repair=TokenRepair(t.begin, stop))
+    return wrong("E0113", message, span, fix=fix, tokens=t.tokens)
 
 
 def several_names(t: Trouble) -> SyntaxProblem | None:
@@ -324,20 +288,18 @@ def documentation_text(t: Trouble) -> SyntaxProblem | None:
     if not (t.between or (t.complete and t.on_new_line)):
         return None
     quotes = t.source.text[t.token.start : t.token.start + 3]
-    stop, end, inner = t.position + 1, t.token.end, t.token.text.strip("\"'")
+    end, inner = t.token.end, t.token.text.strip("\"'")
     if quotes in ('"""', "'''"):
         close = t.source.text.find(quotes, t.token.start + 3)
         if close < 0:
             return None
         end, inner = close + 3, t.source.text[t.token.start + 3 : close]
-        while t.tokens[stop].start < end and t.tokens[stop].kind != END:
-            stop += 1
     span = Span(t.source, t.token.start, end)
     lines = [line.strip() for line in inner.strip().splitlines()]
     comment = "\n".join(f"// {line}".rstrip() for line in lines)
     message = "a text alone says nothing; a remark begins with `//`"
     fix = replaced("make it a comment", span, comment)
-    return wrong("E0117", message, span, fix=fix, repair=TokenRepair(t.position, stop))
+    return wrong("E0117", message, span, fix=fix, tokens=t.tokens)
 
 
 # --- Signs, units, quotes and words.
@@ -383,10 +345,8 @@ def unknown_unit(t: Trouble) -> SyntaxProblem | None:
         message, label = f"`{number}{text}` is not a number", "more than one point"
         return wrong("E0105", message, t.span(before, t.token), label, repair=t.exchanged())
     if text[0] == "_" and (digits := text.replace("_", "")).isdigit():
-        whole = Token("NUMBER", number + digits, before.start, t.token.end)
-        span, repair = t.span(before, t.token), TokenRepair(t.position - 1, t.position + 1, (whole,))
-        message = f"`{number}{text}` is written `{whole.text}`"
-        return wrong("E0105", message, span, right=whole.text, repair=repair)
+        right, message = number + digits, f"`{number}{text}` is written `{number}{digits}`"
+        return wrong("E0105", message, t.span(before, t.token), right=right, tokens=t.tokens)
     meant = UNIT_WORDS.get(text.lower())
     return wrong(
         "E0105",
@@ -431,12 +391,9 @@ def foreign_character(t: Trouble) -> SyntaxProblem | None:
 
 def _fence(t: Trouble) -> SyntaxProblem:
     """Recognises a line of Markdown around a program: "```aidl"."""
-    end = line_end(t.source.text, t.token.start)
-    stop = next(k for k in range(t.position, len(t.tokens)) if t.tokens[k].start >= end)
-    line = Span(t.source, t.token.start, end)
+    line = Span(t.source, t.token.start, line_end(t.source.text, t.token.start))
     message = "the fence of a Markdown block is no part of the program"
-    fix = replaced("remove it", line, "")
-    return wrong("E0108", message, line, fix=fix, repair=TokenRepair(t.position, stop))
+    return wrong("E0108", message, line, fix=replaced("remove it", line, ""), tokens=t.tokens)
 
 
 def _bars(t: Trouble) -> SyntaxProblem | None:
@@ -451,8 +408,7 @@ def _bars(t: Trouble) -> SyntaxProblem | None:
     edits = (Edit(t.span(), "abs("), Edit(Span(t.source, close.start, close.end), ")"))
     message, span = f"an absolute value is written `abs({inner})`", Span(t.source, t.token.start, close.end)
     fix = Fix(f"write `abs({inner})`", edits, is_sure=True)
-    tokens = t.token.but("CALL", "abs("), *t.tokens[t.position + 1 : stop], close.but(")", ")")
-    return wrong("E0108", message, span, fix=fix, repair=TokenRepair(t.position, stop + 1, tokens))
+    return wrong("E0108", message, span, fix=fix, tokens=t.tokens)
 
 
 def _curly_quote(t: Trouble) -> SyntaxProblem:
@@ -550,7 +506,7 @@ def foreign_statement(t: Trouble) -> SyntaxProblem | None:
         name = t.tokens[t.begin + 1].text
         message = f"there is no `{word}`: a definition begins with its name, `{name} = …`"
         fix = replaced(f"leave out `{word}`", rest, "")
-        return wrong("E0113", message, span, fix=fix, repair=TokenRepair(t.begin, t.begin + 1))
+        return wrong("E0113", message, span, fix=fix, tokens=t.tokens)
     if right:
         stand_in = [Token(part, part, first.start, first.end) for part in right.split()]
         if first.kind == "NAME" and _would_take(t, stand_in):

@@ -119,14 +119,6 @@ class _Printer:
         if not first and self.source.count("\n", place, start) > 1:
             self.lines.append(Line(""))
 
-    def _comments_inside(self, statement: ast.Statement, indent: int, mark: int) -> None:
-        """Moves comments in the middle of a statement in front of it."""
-        moved = []
-        while (comment := self._peek(statement.span.end)) is not None:
-            moved.append(Line(" " * indent + comment.text.rstrip()))
-            self.next_comment += 1
-        self.lines[mark:mark] = moved
-
     def _trailing_comment(self, place: int) -> int:
         """Puts a comment that follows on the same line behind the last one. Returns where to go on."""
         comment = self._peek(len(self.source) + 1)
@@ -152,7 +144,9 @@ class _Printer:
             first = False
             mark = len(self.lines)
             self._statement(statement, indent, constraints)
-            self._comments_inside(statement, indent, mark)
+            while (inside := self._peek(statement.span.end)) is not None:  # which move in front of it
+                self.lines.insert(mark, Line(" " * indent + inside.text.rstrip()))
+                self.next_comment, mark = self.next_comment + 1, mark + 1
             place = self._trailing_comment(max(place, statement.span.end))
         self._comments_before(end, place, indent, first)
 
@@ -308,7 +302,9 @@ class _Printer:
         name, expression = self.expressions.name, self.expressions.expression
         match node:
             case ast.Structure():
-                return self._structure_head(node)
+                called = doc(name(node.name), *self._indices(node.indices))
+                target = called if node.parameters is None else self._parameters(node.name, node.parameters)
+                return doc(f"{node.kind} ", target, *self._placement(node.placement))
             case ast.Assign():
                 level = OR if node.placement else 0
                 word = "construction " if node.construction else ""
@@ -329,8 +325,13 @@ class _Printer:
                 return doc("" if bare else "constrain ", expression(node.value))
             case ast.Equation():
                 return doc("" if begins_statement(node.meant) else "constrain ", self._equation(node))
+            case ast.Constrain(braces=True):
+                return doc("constrain")
             case ast.Constrain():
-                return doc("constrain") if node.braces else self._constrain(node)
+                item = node.items.statements[0]
+                assert isinstance(item, ast.Equation | ast.ExpressionStatement)
+                said = self._equation(item) if isinstance(item, ast.Equation) else expression(item.value)
+                return doc("constrain ", said)
             case ast.Prefer():
                 weight = doc(" weight ", expression(node.weight, SUM)) if node.weight else doc()
                 return doc("prefer ", expression(node.value, OR), weight)
@@ -354,13 +355,6 @@ class _Printer:
             case ast.Todo():
                 return doc("todo")
 
-    def _structure_head(self, node: ast.Structure) -> PrintDocument:
-        if node.parameters is None:
-            target = doc(self.expressions.name(node.name), *self._indices(node.indices))
-        else:
-            target = self._parameters(node.name, node.parameters)
-        return doc(f"{node.kind} ", target, *self._placement(node.placement))
-
     def _parameters(self, name: ast.Identifier, parameters: Sequence[ast.Parameter]) -> PrintDocument:
         items = []
         for p in parameters:
@@ -382,13 +376,6 @@ class _Printer:
     def _attribute(self, node: ast.Attribute) -> PrintDocument:
         name = "@" + self.expressions.name(node.name)
         return self.expressions.arguments(name + "(", node.arguments) if node.arguments else doc(name)
-
-    def _constrain(self, node: ast.Constrain) -> PrintDocument:
-        item = node.items.statements[0]
-        if isinstance(item, ast.Equation):
-            return doc("constrain ", self._equation(item))
-        assert isinstance(item, ast.ExpressionStatement)
-        return doc("constrain ", self.expressions.expression(item.value))
 
     def _equation(self, node: ast.Equation) -> PrintDocument:
         expression = self.expressions.expression

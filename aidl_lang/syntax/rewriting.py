@@ -13,7 +13,6 @@ from aidl_lang.syntax import ast
 from aidl_lang.syntax.automaton import (
     LONGEST,
     SyntaxProblem,
-    TokenRepair,
     Trouble,
     closing,
     line_end,
@@ -30,15 +29,14 @@ if TYPE_CHECKING:
 
 def understood(source: SourceFile, tokens: list[Token]) -> list[Diagnostic]:
     """Rewrites tokens that have one plain meaning but would be read as another: functions with a body, `new`,
-    `between`, texts marked as in Python, and what follows a `todo`. Repairs count from the token they begin
-    with.
+    `between`, texts marked as in Python, and what follows a `todo`.
     """
     found: list[Diagnostic] = []
     places = [n for n, token in enumerate(tokens) if token.text in _WORDS]
     for at in places[: -_MOST_PLACES - 1 : -1]:  # from the end, so that earlier tokens keep their numbers
         problem = _answer(source, tokens, at)
         if problem is not None and problem.repair is not None and len(found) < _MOST_REWRITTEN:
-            tokens[at + problem.repair.start : at + problem.repair.stop] = problem.repair.tokens
+            tokens[problem.repair.start : problem.repair.stop] = problem.repair.tokens
             found.append(problem.diagnostic)
     return found[::-1]
 
@@ -63,18 +61,21 @@ def _answer(source: SourceFile, tokens: Sequence[Token], at: int) -> SyntaxProbl
         case "lambda" if at > 1 and tokens[at - 1].kind == "=":
             return _lambda(source, tokens, at)
         case "new" if two.kind == "CALL":
-            return _left_out(source, one, two, "things are made without `new`")
+            return _left_out(source, tokens, at, "things are made without `new`")
         case "f" | "r" | "u" | "b" if two.kind == "STRING" and one.end == two.start:
             hint = 'texts join with `+`: `"M" + str(size)`' if one.text == "f" else ""
-            return _left_out(source, one, two, f"a text has no `{one.text}` before it", hint)
+            return _left_out(source, tokens, at, f"a text has no `{one.text}` before it", hint)
         case _:
             return None
 
 
-def _left_out(source: SourceFile, word: Token, after: Token, message: str, hint: str = "") -> SyntaxProblem:
+def _left_out(
+    source: SourceFile, tokens: Sequence[Token], at: int, message: str, hint: str = ""
+) -> SyntaxProblem:
+    word, after = tokens[at], tokens[at + 1]
     span = Span(source, word.start, word.end)
     fix = replaced(f"leave out `{word.text}`", Span(source, word.start, after.start), "")
-    return wrong("E0113", message, span, fix=fix, hints=(hint,) if hint else (), repair=TokenRepair(0, 1))
+    return wrong("E0113", message, span, fix=fix, hints=(hint,) if hint else (), tokens=tokens)
 
 
 def _todo(source: SourceFile, tokens: Sequence[Token], at: int) -> SyntaxProblem | None:
@@ -101,8 +102,7 @@ def _todo(source: SourceFile, tokens: Sequence[Token], at: int) -> SyntaxProblem
         is_last = not source.text[end : line_end(source.text, end)].strip()
         message += "; what is still to be done says a comment"
         right = f"todo  // {remark}" if is_last else f"todo /* {remark.replace('*/', '')} */"
-    repair = TokenRepair(0, stop - at, (Token("todo", "todo", word.start, end),))
-    return wrong("E0117", message, span, right=right, repair=repair)
+    return wrong("E0117", message, span, right=right, tokens=tokens)
 
 
 def _function_with_body(source: SourceFile, tokens: Sequence[Token], begin: int) -> SyntaxProblem | None:
@@ -125,15 +125,12 @@ def _function_with_body(source: SourceFile, tokens: Sequence[Token], begin: int)
     head = Span(source, tokens[begin + 1].start, tokens[close].end).text
     right = f"fn {head} = {Span(source, value[0].start, value[-1].end).text}"
     span = Span(source, tokens[begin].start, tokens[after].end if in_braces else value[-1].end)
-    written = (
-        Token("fn", "fn", tokens[begin].start, tokens[begin].end),
-        *tokens[begin + 1 : close + 1],
-        Token("=", "=", tokens[at].start, tokens[at].end),
-        *value,
-    )
-    message = f"a function is written `{right}`"
-    repair = TokenRepair(0, (after + 1 if in_braces else stop) - begin, written)
-    return wrong("E0113", message, span, fix=replaced("write it so", span, right), repair=repair)
+    return _as_function(tokens, span, right)
+
+
+def _as_function(tokens: Sequence[Token], span: Span, right: str) -> SyntaxProblem:
+    fix = replaced("write it so", span, right)
+    return wrong("E0113", f"a function is written `{right}`", span, fix=fix, tokens=tokens)
 
 
 def _between(source: SourceFile, tokens: Sequence[Token], at: int) -> SyntaxProblem | None:
@@ -144,12 +141,10 @@ def _between(source: SourceFile, tokens: Sequence[Token], at: int) -> SyntaxProb
     low = tokens[at + 1 : middle]
     span = Span(source, tokens[at].start, tokens[middle + 1].end)
     right = f"in {Span(source, low[0].start, low[-1].end).text}..{tokens[middle + 1].text}"
-    word, dots = tokens[at].but("in", "in"), tokens[middle].but("..", "..")
     gap = Span(source, low[-1].end, tokens[middle + 1].start)
     edits = Edit(Span(source, tokens[at].start, tokens[at].end), "in"), Edit(gap, "..")
-    repair = TokenRepair(0, middle + 1 - at, (word, *low, dots))
     fix = Fix(f"write `{right}`", edits, is_sure=True)
-    return wrong("E0109", f"a range is written `{right}`", span, fix=fix, repair=repair)
+    return wrong("E0109", f"a range is written `{right}`", span, fix=fix, tokens=tokens)
 
 
 def _lambda(source: SourceFile, tokens: Sequence[Token], at: int) -> SyntaxProblem | None:
@@ -160,9 +155,9 @@ def _lambda(source: SourceFile, tokens: Sequence[Token], at: int) -> SyntaxProbl
     if tokens[colon].kind != ":" or stop == colon + 1:
         return None
     begin = at - 3 if at > 2 and tokens[at - 3].kind == "let" else at - 2
-    head, value = [tokens[at - 2], *tokens[at + 1 : colon]], tokens[colon + 1 : stop]
+    value = tokens[colon + 1 : stop]
     span = Span(source, tokens[begin].start, value[-1].end)
-    return _as_function(source, head, value, span, begin - at, stop - at)
+    return _named_function(tokens, [tokens[at - 2], *tokens[at + 1 : colon]], value, span)
 
 
 def arrow_function(t: Trouble) -> SyntaxProblem | None:
@@ -179,22 +174,15 @@ def arrow_function(t: Trouble) -> SyntaxProblem | None:
         return None
     value = t.tokens[at + 2 : stop]
     span = Span(t.source, t.first.start, value[-1].end)
-    return _as_function(t.source, statement, value, span, t.begin, stop)
+    return _named_function(t.tokens, statement, value, span)
 
 
-def _as_function(
-    source: SourceFile, head: Sequence[Token], value: Sequence[Token], span: Span, start: int, stop: int
+def _named_function(
+    tokens: Sequence[Token], head: Sequence[Token], value: Sequence[Token], span: Span
 ) -> SyntaxProblem:
-    called, *parameters = (token for token in head if token.kind == "NAME")
-    inside = ", ".join(parameter.text for parameter in parameters)
-    right = f"fn {called.text}({inside}) = {Span(source, value[0].start, value[-1].end).text}"
-    message, place = f"a function is written `{right}`", (span.start, span.start)
-    tokens = [Token("fn", "fn", *place), called.but("CALL", called.text + "(")]
-    for i, parameter in enumerate(parameters):
-        tokens += [Token(",", ",", *place), parameter] if i else [parameter]
-    tokens += [Token(")", ")", *place), Token("=", "=", *place), *value]
-    repair = TokenRepair(start, stop, tuple(tokens))
-    return wrong("E0113", message, span, fix=replaced("write it so", span, right), repair=repair)
+    called, *parameters = (token.text for token in head if token.kind == "NAME")
+    said = Span(span.source, value[0].start, value[-1].end).text
+    return _as_function(tokens, span, f"fn {called}({', '.join(parameters)}) = {said}")
 
 
 def spaced_call(source: SourceFile, token: Token) -> Diagnostic:

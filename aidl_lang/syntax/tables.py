@@ -288,7 +288,9 @@ def tokenize(source: SourceFile, start: int = 0, end: int | None = None) -> Toke
     for found in tables.lark.parser.lexer.lex(state, None):
         kind, word, position = tables.kinds.get(found.type, found.type), found.value, found.start_pos
         if kind in tables.comments:
-            _take_comment(source, position, word, result.comments, doc)
+            result.comments.append(Comment(Span(source, position, position + len(word)), word))
+            if word.startswith("///") and not word.startswith("////") and begins_line(text, position):
+                doc.append(word[3:].removeprefix(" ").rstrip())
             continue
         token = Token(kind, word, position, position + len(word))
         if doc:
@@ -311,12 +313,6 @@ def tokenize(source: SourceFile, start: int = 0, end: int | None = None) -> Toke
 def is_open_comment(token: Token) -> bool:
     """Tells whether a token is a comment that is not closed, which takes in the rest of the text."""
     return token.kind == UNKNOWN and token.text.startswith("/*")
-
-
-def _take_comment(source: SourceFile, start: int, text: str, comments: list[Comment], doc: list[str]) -> None:
-    comments.append(Comment(Span(source, start, start + len(text)), text))
-    if text.startswith("///") and not text.startswith("////") and begins_line(source.text, start):
-        doc.append(text[3:].removeprefix(" ").rstrip())
 
 
 def _touching(tokens: list[Token], token: Token) -> Token:

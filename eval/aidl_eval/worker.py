@@ -9,8 +9,7 @@ from itertools import count
 from typing import Any, TypeVar, cast
 
 from aidl_eval.rendering import Wrapped
-from aidl_lang.common.crew import Broke, Crew
-from aidl_lang.common.processes import Guarded, Limit
+from aidl_lang.common.processes import Broke, Crew, Guarded, Limit
 from aidl_lang.tools.llm.messages import Conversation, Language, Verdict
 
 T = TypeVar("T")

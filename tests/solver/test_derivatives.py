@@ -14,7 +14,7 @@ from aidl_lang.solver import Problem, expression
 from aidl_lang.solver.array_program import ArrayFreezing, Schedule
 from aidl_lang.solver.expression import ARITY, BRANCHING, NAMES, PARTIALS, VALUE, Op
 from aidl_lang.solver.freezing import Freezer
-from aidl_lang.solver.valuation import Valuation, evaluate, linearise
+from aidl_lang.solver.valuation import Valuation, linearise
 
 from .check import values_of
 from .kinds import KINDS
@@ -156,7 +156,7 @@ def values_both_ways(op: int, places: list[tuple[float, ...]]) -> tuple[np.ndarr
     """By numbers and by arrays."""
     with np.errstate(all="ignore"):
         found = expression.values_of(op, tuple(np.array(column) for column in zip(*places, strict=True)))
-    return np.array([evaluate(op, place) for place in places]), found
+    return np.array([VALUE[op](*(place if len(place) > 1 else place * 2)) for place in places]), found
 
 
 OPERATIONS = pytest.mark.parametrize("op", [op for op in NAMES if op > Op.UNKNOWN], ids=NAMES.__getitem__)

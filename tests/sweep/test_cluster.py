@@ -13,10 +13,9 @@ from pathlib import Path
 
 import pytest
 
-from aidl_lang.common import crew as cluster_module
-from aidl_lang.common.crew import Broke, Cluster, Crew, EngineError
+from aidl_lang.common import processes as cluster_module
 from aidl_lang.common.diagnostics import AidlError
-from aidl_lang.common.processes import Limit
+from aidl_lang.common.processes import Broke, Cluster, Crew, EngineError, Limit
 from tests.sweep.cluster import LocalCluster, free_port
 from tests.sweep.here import PLATE
 from tests.sweep.test_crew import obey
@@ -156,7 +155,7 @@ def test_a_client_that_is_interrupted_leaves_nothing_behind_and_goes_on(
 
 
 def test_limits_hold_on_a_cluster(tmp_path: Path, shared: LocalCluster) -> None:
-    engine = Cluster(shared.address, "aidl_lang.common.crew")
+    engine = Cluster(shared.address, "aidl_lang.common.processes")
     try:
         crew: Crew[str, str] = Crew(engine)
         words = ["well", "die", "hang", "raise", "too"]
@@ -176,7 +175,7 @@ def test_limits_hold_on_a_cluster(tmp_path: Path, shared: LocalCluster) -> None:
 def test_a_worker_with_another_package_is_told(shared: LocalCluster, monkeypatch: pytest.MonkeyPatch) -> None:
     mine = cluster_module.package()
     monkeypatch.setattr(cluster_module, "package", lambda: "0.0.1+feed")
-    engine = Cluster(shared.address, "aidl_lang.common.crew")
+    engine = Cluster(shared.address, "aidl_lang.common.processes")
     try:
         crew: Crew[str, str] = Crew(engine)
         crew.give("it", 10.0, obey, "well", "/nowhere")
@@ -193,7 +192,7 @@ def test_a_scheduler_that_is_not_there_is_told(monkeypatch: pytest.MonkeyPatch) 
     monkeypatch.setattr(cluster_module, "_CONNECTING", 1.0)
     address = f"tcp://127.0.0.1:{free_port()}"
     with pytest.raises(AidlError) as raised:
-        Cluster(address, "aidl_lang.common.crew")
+        Cluster(address, "aidl_lang.common.processes")
     assert raised.value.diagnostic.message.startswith(f"no scheduler answers at `{address}`: ")
 
 
@@ -202,7 +201,7 @@ def test_a_scheduler_that_stays_away_is_told(
     tmp_path: Path, two: LocalCluster, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(cluster_module, "_RECONNECTING", 3.0)
-    engine = Cluster(two.address, "aidl_lang.common.crew")
+    engine = Cluster(two.address, "aidl_lang.common.processes")
     try:
         crew: Crew[str, str] = Crew(engine)
         crew.give("it", 60.0, obey, "hang", str(tmp_path))

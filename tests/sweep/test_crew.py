@@ -13,8 +13,7 @@ from pathlib import Path
 
 import pytest
 
-from aidl_lang.common.crew import Broke, Crew
-from aidl_lang.common.processes import Guarded, Limit
+from aidl_lang.common.processes import Broke, Crew, Guarded, Limit
 
 
 def obey(word: str, folder: str) -> str:
@@ -36,7 +35,7 @@ def obey(word: str, folder: str) -> str:
 
 @pytest.fixture(scope="module")
 def engine() -> Iterator[Guarded]:
-    engine = Guarded(2, "aidl_lang.common.crew")
+    engine = Guarded(2, "aidl_lang.common.processes")
     yield engine
     engine.close()
 

@@ -5,11 +5,13 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import field
+from dataclasses import field, replace
 from functools import cached_property, lru_cache
 from itertools import pairwise
 from pathlib import PurePosixPath
 from typing import TYPE_CHECKING, Any, TypeAlias
+
+from fontTools.misc.transform import Transform
 
 from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.font_files import Curve, Vec, point_of, quadratic
@@ -26,11 +28,6 @@ if TYPE_CHECKING:
 # which circles are a kind. An affine map of each is one of the same sort, exactly.
 
 TURN = 2 * math.pi
-
-Matrix: TypeAlias = tuple[float, float, float, float, float, float]
-"""a, b, c, d, e, f of the map (x, y) → (a x + c y + e, b x + d y + f), as SVG writes it."""
-
-STILL: Matrix = (1.0, 0.0, 0.0, 1.0, 0.0, 0.0)
 
 
 @record(slots=True)
@@ -68,41 +65,20 @@ class Bow:
 Stroke: TypeAlias = Curve | Bow
 
 
-def ellipse(center: Vec, u: Vec, v: Vec) -> Bow:
-    """Returns a whole ellipse by two conjugate half-diameters."""
-    start = center[0] + u[0], center[1] + u[1]
-    return Bow(center, u, v, 0.0, TURN, start, start)
+def bow(center: Vec, u: Vec, v: Vec, first: float = 0.0, sweep: float = TURN) -> Bow:
+    """Returns an arc by two conjugate half-diameters; a whole ellipse unless said."""
+    made = Bow(center, u, v, first, sweep, center, center)
+    start = made.at(first)
+    return replace(made, start=start, end=start if made.is_whole else made.at(first + sweep))
 
 
-def circle(center: Vec, radius: float) -> Bow:
-    return ellipse(center, (radius, 0.0), (0.0, radius))
-
-
-def product(outer: Matrix, inner: Matrix) -> Matrix:
-    """Returns the map that does `inner` first."""
-    a, b, c, d, e, f = outer
-    g, h, i, j, k, m = inner
-    return (
-        a * g + c * h,
-        b * g + d * h,
-        a * i + c * j,
-        b * i + d * j,
-        a * k + c * m + e,
-        b * k + d * m + f,
-    )
-
-
-def mapped(stroke: Stroke, matrix: Matrix) -> Stroke:
+def mapped(stroke: Stroke, matrix: Transform) -> Stroke:
     """Returns the image of a stroke."""
-    a, b, c, d, e, f = matrix
-
-    def at(p: Vec) -> Vec:
-        return a * p[0] + c * p[1] + e, b * p[0] + d * p[1] + f
-
     if not isinstance(stroke, Bow):
-        return tuple(map(at, stroke))
-    u, v = ((a * x + c * y, b * x + d * y) for x, y in (stroke.u, stroke.v))
-    return Bow(at(stroke.center), u, v, stroke.first, stroke.sweep, at(stroke.start), at(stroke.end))
+        return tuple(matrix.transformPoints(stroke))
+    center, start, end = matrix.transformPoints((stroke.center, stroke.start, stroke.end))
+    u, v = matrix.transformVectors((stroke.u, stroke.v))
+    return Bow(center, u, v, stroke.first, stroke.sweep, start, end)
 
 
 def ends(stroke: Stroke) -> tuple[Vec, Vec]:
@@ -462,19 +438,15 @@ def _parts(elements: Iterable[Element], kind: str) -> tuple[dict[str, Trace], in
     for written, of in members.items():
         if len(parts) == MOST_NAMES:
             return parts, len(members) - MOST_NAMES
-        name = _sanitised(written, kind)
+        name = re.sub(r"\W+", "_", written[:_LONGEST_NAME]).strip("_") or kind
+        if name[0].isdigit() or not name[0].isidentifier():
+            name = f"{kind}_{name}"
         if any(fold(name) == fold(known) and part.elements == tuple(of) for known, part in parts.items()):
             continue  # the label of a group and its id
         name = _free(name, taken)
         taken.add(fold(name))
         parts[name] = Trace(name, tuple(of))
     return parts, 0
-
-
-def _sanitised(written: str, kind: str) -> str:
-    """Returns the name of AIDL that is most like one of a file."""
-    name = re.sub(r"\W+", "_", written[:_LONGEST_NAME]).strip("_") or kind
-    return f"{kind}_{name}" if name[0].isdigit() or not name[0].isidentifier() else name
 
 
 def _free(name: str, taken: set[str]) -> str:

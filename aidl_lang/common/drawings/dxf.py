@@ -10,6 +10,8 @@ from collections.abc import Iterable, Iterator, Sequence
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
+from fontTools.misc.transform import Identity, Scale, Transform
+
 from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.drawings import (
     TURN,
@@ -17,14 +19,14 @@ from aidl_lang.common.drawings import (
     Collector,
     DrawingError,
     Engraving,
-    Matrix,
     Stroke,
+    bow,
     cubics,
     ends,
     flat,
     mapped,
 )
-from aidl_lang.common.font_files import FAULTS, Vec
+from aidl_lang.common.font_files import FAULTS
 from aidl_lang.common.prose import counted
 from aidl_lang.common.running import checkpoint
 
@@ -157,8 +159,7 @@ class _Walk:
             if kind not in _READ or kind == "POLYLINE":
                 self.found.leave_out(_NAMES.get(kind, f"`{kind[:20]}` object"))
             return
-        unit = self.unit or 1.0
-        strokes = [mapped(s, (unit, 0.0, 0.0, unit, 0.0, 0.0)) for s in strokes]
+        strokes = [mapped(s, Scale(self.unit or 1.0)) for s in strokes]
         engraving = _engraving(entity)
         # The outlines of one area alternate.
         is_alone = engraving is None or not engraving.is_area
@@ -232,11 +233,10 @@ def _millimetres(units: object) -> float | None:
 _READ = frozenset({"LINE", "CIRCLE", "ARC", "ELLIPSE", "LWPOLYLINE", "POLYLINE", "SPLINE"})
 
 
-def _plane(entity: Any, height: float = 0.0) -> Matrix:
+def _plane(entity: Any, height: float = 0.0) -> Transform:
     """Returns the map of an entity's own coordinates to the world's, seen from above."""
     system = entity.ocs()
-    (a, b), (c, d), (e, f) = (flat(system.to_wcs(p)) for p in ((1, 0, 0), (0, 1, 0), (0, 0, height)))
-    return a, b, c, d, e, f
+    return Transform(*(v for p in ((1, 0, 0), (0, 1, 0), (0, 0, height)) for v in flat(system.to_wcs(p))))
 
 
 def _round(entity: Any, *, is_whole: bool) -> Stroke:
@@ -246,8 +246,8 @@ def _round(entity: Any, *, is_whole: bool) -> Stroke:
         first = math.radians(entity.dxf.start_angle)
         sweep = math.radians(entity.dxf.end_angle) - first
         sweep = sweep % TURN or TURN
-    bow = _bow(flat(center), (radius, 0.0), (0.0, radius), first, sweep)
-    return mapped(bow, _plane(entity, center[2]))
+    made = bow(flat(center), (radius, 0.0), (0.0, radius), first, sweep)
+    return mapped(made, _plane(entity, center[2]))
 
 
 def _ellipse(entity: Any) -> Stroke:
@@ -255,20 +255,13 @@ def _ellipse(entity: Any) -> Stroke:
     sweep = (float(entity.dxf.end_param) - first) % TURN
     if sweep < 1e-9 or sweep > TURN - 1e-9:
         sweep = TURN
-    return _bow(flat(entity.dxf.center), flat(entity.dxf.major_axis), flat(entity.minor_axis), first, sweep)
-
-
-def _bow(center: Vec, u: Vec, v: Vec, first: float, sweep: float) -> Bow:
-    bow = Bow(center, u, v, first, sweep, center, center)
-    start = bow.at(first)
-    end = start if bow.is_whole else bow.at(first + sweep)
-    return Bow(center, u, v, first, sweep, start, end)
+    return bow(flat(entity.dxf.center), flat(entity.dxf.major_axis), flat(entity.minor_axis), first, sweep)
 
 
 def _polyline(entity: Any) -> Iterator[Stroke]:
     if entity.is_3d_polyline:
         points = [(*flat(v.dxf.location), 0.0) for v in entity.vertices]
-        yield from _bulged(points, entity.is_closed, (1.0, 0.0, 0.0, 1.0, 0.0, 0.0))
+        yield from _bulged(points, entity.is_closed, Identity)
         return
     kept = [v for v in entity.vertices if not v.dxf.flags & 16]  # without the frame of a fitted spline
     points = [(*flat(v.dxf.location), float(v.dxf.get("bulge", 0.0))) for v in kept]
@@ -276,7 +269,9 @@ def _polyline(entity: Any) -> Iterator[Stroke]:
     yield from _bulged(points, entity.is_closed, _plane(entity, height))
 
 
-def _bulged(points: Sequence[tuple[float, float, float]], is_closed: bool, plane: Matrix) -> Iterator[Stroke]:
+def _bulged(
+    points: Sequence[tuple[float, float, float]], is_closed: bool, plane: Transform
+) -> Iterator[Stroke]:
     """Yields the edges of a polyline: lines, and arcs by their bulge, tan(sweep / 4)."""
     if is_closed and len(points) > 1:
         points = [*points, (*points[0][:2], 0.0)]

@@ -11,18 +11,10 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 
+from fontTools.misc.transform import Identity, Offset, Transform
+
 from aidl_lang.common.diagnostics import Diagnostic
-from aidl_lang.common.drawings import (
-    STILL,
-    Collector,
-    DrawingError,
-    Engraving,
-    Matrix,
-    Stroke,
-    ends,
-    mapped,
-    product,
-)
+from aidl_lang.common.drawings import Collector, DrawingError, Engraving, Stroke, ends, mapped
 from aidl_lang.common.drawings import svg_values as xml
 from aidl_lang.common.drawings.svg_values import (
     MM_PER_PIXEL,
@@ -65,7 +57,7 @@ class _Place:
     operation that is said of it, `` for what a picture has drawn on a part, None for material.
     """
 
-    matrix: Matrix
+    matrix: Transform
     page: tuple[float, float]
     style: Mapping[str, str]
     names: tuple[str, ...] = ()
@@ -98,14 +90,14 @@ class _Walk:
 
     def run(self) -> tuple[Collector, list[Diagnostic]]:
         width, height, matrix = self._page()
-        flip: Matrix = (MM_PER_PIXEL, 0.0, 0.0, -MM_PER_PIXEL, 0.0, height * MM_PER_PIXEL)
-        place = _Place(product(flip, matrix), (width, height), {})
+        flip = Transform(MM_PER_PIXEL, 0.0, 0.0, -MM_PER_PIXEL, 0.0, height * MM_PER_PIXEL)
+        place = _Place(flip.transform(matrix), (width, height), {})
         style = self._style(self.root, {})
         if style.get("display") != "none":
             self._children(self.root, replace(place, style=style))
         return self.found, list(self._remarks())
 
-    def _page(self) -> tuple[float, float, Matrix]:
+    def _page(self) -> tuple[float, float, Transform]:
         """Returns width and height of the page in pixels, and the map of its coordinates to these."""
         box = self._view_box(self.root)
         full = (box[2], box[3]) if box else _PAGE
@@ -144,7 +136,7 @@ class _Walk:
         if any(style.get(way, "none") != "none" for way in ("clip-path", "mask")):
             self.found.leave_out("clipped or masked shape")
         try:
-            matrix = product(place.matrix, transform(node.attributes.get("transform", "")))
+            matrix = place.matrix.transform(transform(node.attributes.get("transform", "")))
         except (ValueMistake, ArithmeticError):
             self.broken.append(_called(node))
             matrix = place.matrix
@@ -201,8 +193,7 @@ class _Walk:
             raise DrawingError(
                 "E0363", f"`{self.name}` is refused: its `use` elements grow beyond {_MOST_USES:,}", hint
             )
-        matrix = product(place.matrix, self._corner(node, place.page))
-        place = replace(place, matrix=matrix)
+        place = replace(place, matrix=place.matrix.transform(self._corner(node, place.page)))
         if target.tag in ("symbol", "svg"):
             style = self._style(target, place.style)
             if style.get("display") == "none":
@@ -223,10 +214,10 @@ class _Walk:
         if width <= 0.0 or height <= 0.0:
             return
         box = self._view_box(node)
-        corner = self._corner(node, place.page) if node.tag == "svg" else STILL
-        inner = product(corner, self._fitted(node, box, width, height))
+        corner = self._corner(node, place.page) if node.tag == "svg" else Identity
+        inner = corner.transform(self._fitted(node, box, width, height))
         page = (box[2], box[3]) if box else (width, height)
-        self._children(node, replace(place, matrix=product(place.matrix, inner), page=page))
+        self._children(node, replace(place, matrix=place.matrix.transform(inner), page=page))
 
     # --- Attributes ----------------------------------------------------------------------------
 
@@ -252,12 +243,9 @@ class _Walk:
             self.broken.append(_called(node))
             return otherwise
 
-    def _corner(self, node: Node, page: tuple[float, float]) -> Matrix:
-        x, y = (
-            self._length(node, node.attributes.get(name, "0"), whole)
-            for name, whole in zip("xy", page, strict=True)
-        )
-        return 1.0, 0.0, 0.0, 1.0, x, y
+    def _corner(self, node: Node, page: tuple[float, float]) -> Transform:
+        at = zip("xy", page, strict=True)
+        return Offset(*(self._length(node, node.attributes.get(name, "0"), whole) for name, whole in at))
 
     def _view_box(self, node: Node) -> tuple[float, float, float, float] | None:
         if "viewBox" not in node.attributes:
@@ -271,10 +259,10 @@ class _Walk:
 
     def _fitted(
         self, node: Node, box: tuple[float, float, float, float] | None, width: float, height: float
-    ) -> Matrix:
+    ) -> Transform:
         """Returns the map of a view box to its page (SVG 2, 8.2)."""
         if box is None:
-            return STILL
+            return Identity
         x, y, w, h = box
         across, up = width / w, height / h
         align, *meet = node.attributes.get("preserveAspectRatio", "xMidYMid").split() or ["xMidYMid"]
@@ -283,7 +271,7 @@ class _Walk:
         shares = {"Min": 0.0, "Mid": 0.5, "Max": 1.0}
         dx = (width - w * across) * shares.get(align[1:4], 0.0)
         dy = (height - h * up) * shares.get(align[5:8], 0.0)
-        return across, 0.0, 0.0, up, dx - x * across, dy - y * up
+        return Transform(across, 0.0, 0.0, up, dx - x * across, dy - y * up)
 
     # --- What is to be told --------------------------------------------------------------------
 

@@ -9,7 +9,9 @@ from dataclasses import field
 from itertools import pairwise
 from xml.parsers import expat
 
-from aidl_lang.common.drawings import STILL, TURN, Bow, DrawingError, Matrix, Stroke, circle, ellipse, product
+from fontTools.misc.transform import Identity, Offset, Scale, Transform
+
+from aidl_lang.common.drawings import TURN, Bow, DrawingError, Stroke, bow
 from aidl_lang.common.font_files import Vec, quadratic
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
@@ -164,41 +166,34 @@ def declarations(text: str) -> Iterator[tuple[str, str]]:
 _STEP = re.compile(r"\s*,?\s*([a-zA-Z]+)\s*\(([^()]*)\)\s*,?\s*")
 
 
-def transform(text: str) -> Matrix:
+def transform(text: str) -> Transform:
     """Returns the map that a `transform` attribute describes. Raises ValueMistake."""
-    matrix, at = STILL, 0
+    matrix, at = Identity, 0
     if text.strip() in ("", "none"):
         return matrix
     while at < len(text):
         found = _STEP.match(text, at)
         if found is None:
             raise ValueMistake(text)
-        matrix, at = product(matrix, _step(found[1], numbers(found[2]))), found.end()
+        matrix, at = matrix.transform(_step(found[1], numbers(found[2]))), found.end()
     return matrix
 
 
-def _step(name: str, given: Sequence[float]) -> Matrix:
+def _step(name: str, given: Sequence[float]) -> Transform:
     match name, given:
-        case "matrix", [a, b, c, d, e, f]:
-            return a, b, c, d, e, f
-        case "translate", [x]:
-            return 1.0, 0.0, 0.0, 1.0, x, 0.0
-        case "translate", [x, y]:
-            return 1.0, 0.0, 0.0, 1.0, x, y
-        case "scale", [x]:
-            return x, 0.0, 0.0, x, 0.0, 0.0
-        case "scale", [x, y]:
-            return x, 0.0, 0.0, y, 0.0, 0.0
-        case "rotate", [angle]:
-            c, s = _cos_sin(angle)
-            return c, s, -s, c, 0.0, 0.0
-        case "rotate", [angle, x, y]:
-            c, s = _cos_sin(angle)
-            return c, s, -s, c, x - c * x + s * y, y - s * x - c * y
+        case "matrix", [_, _, _, _, _, _]:
+            return Transform(*given)
+        case "translate", [_] | [_, _]:
+            return Offset(*given)
+        case "scale", [_] | [_, _]:
+            return Scale(*given)
+        case "rotate", [angle] | [angle, _, _]:
+            (c, s), (x, y) = _cos_sin(angle), given[1:] or (0.0, 0.0)
+            return Transform(c, s, -s, c, x - c * x + s * y, y - s * x - c * y)
         case "skewX", [angle]:
-            return 1.0, 0.0, math.tan(math.radians(angle)), 1.0, 0.0, 0.0
+            return Identity.skew(math.radians(angle))
         case "skewY", [angle]:
-            return 1.0, math.tan(math.radians(angle)), 0.0, 1.0, 0.0, 0.0
+            return Identity.skew(0.0, math.radians(angle))
         case _:
             raise ValueMistake(name)
 
@@ -338,11 +333,11 @@ def _strokes(node: Node, page: tuple[float, float]) -> Iterator[Stroke]:
         case "circle":
             radius = pixels(node.attributes.get("r", "0"), math.hypot(*page) / math.sqrt(2))
             if radius > 0.0:
-                yield circle((length("cx", 0), length("cy", 1)), radius)
+                yield bow((length("cx", 0), length("cy", 1)), (radius, 0.0), (0.0, radius))
         case "ellipse":
             a, b = _radii(node, page)
             if a > 0.0 and b > 0.0:
-                yield ellipse((length("cx", 0), length("cy", 1)), (a, 0.0), (0.0, b))
+                yield bow((length("cx", 0), length("cy", 1)), (a, 0.0), (0.0, b))
         case _:
             sides = length("x", 0), length("y", 1), length("width", 0), length("height", 1)
             yield from _rectangle(*sides, *_radii(node, page))

@@ -35,57 +35,43 @@ def width_of(text: str) -> int:
 
 
 @record()
-class CellLine:
-    """One line as cells. `columns[i]` is where character i begins; the last entry is the end of the line."""
+class Window:
+    """The part of a line that is shown: characters `start:end` of its cells, with `…` in place of the rest.
+    `columns[i]` is where character i begins; the last entry is the end of the line. Of a very long one only
+    some characters are laid out: those from `skipped` on, to the end unless `is_cut`.
+    """
 
     cells: tuple[str, ...]
     columns: tuple[int, ...]
-
-    @property
-    def text(self) -> str:
-        return "".join(self.cells)
-
-    def column(self, index: int) -> int:
-        """Returns the terminal column at which a character begins; past the end, that of the end."""
-        return self.columns[min(index, len(self.cells))]
-
-
-def lay_out(text: str) -> CellLine:
-    """Returns a line as cells: tabs go to the next stop, controls become their pictures or code points."""
-    cells: list[str] = []
-    columns = [0]
-    for char in text:
-        cell = " " * (TAB - columns[-1] % TAB) if char == "\t" else _visible(char)
-        cells.append(cell)
-        columns.append(columns[-1] + width_of(cell))
-    return CellLine(tuple(cells), tuple(columns))
-
-
-@record()
-class Window:
-    """The part of a long line that is shown: characters `start:end`, with `…` in place of the rest. Of a very
-    long one only some characters are laid out: those from `skipped` on, to the end unless `is_cut`.
-    """
-
-    line: CellLine
     start: int
     end: int
-    skipped: int
-    is_cut: bool
+    skipped: int = 0
+    is_cut: bool = False
 
     @property
     def text(self) -> str:
         before = "…" if self.start or self.skipped else ""
-        after = "…" if self.end < len(self.line.cells) or self.is_cut else ""
-        return before + "".join(self.line.cells[self.start : self.end]) + after
+        after = "…" if self.end < len(self.cells) or self.is_cut else ""
+        return before + "".join(self.cells[self.start : self.end]) + after
 
     def column(self, index: int) -> int:
         """Returns the column of a character within `text`; a character left out counts as at the edge."""
         index -= self.skipped
         if index < self.start:
             return 0
-        shift = self.line.column(self.start) - (1 if self.start or self.skipped else 0)
-        return self.line.column(min(index, self.end)) - shift
+        shift = self.columns[self.start] - (1 if self.start or self.skipped else 0)
+        return self.columns[min(index, self.end)] - shift
+
+
+def lay_out(text: str) -> Window:
+    """Returns a whole line: tabs go to the next stop, controls become their pictures or code points."""
+    cells: list[str] = []
+    columns = [0]
+    for char in text:
+        cell = " " * (TAB - columns[-1] % TAB) if char == "\t" else _visible(char)
+        cells.append(cell)
+        columns.append(columns[-1] + width_of(cell))
+    return Window(tuple(cells), tuple(columns), 0, len(cells))
 
 
 def window(text: str, width: int, focus: tuple[int, int]) -> Window:
@@ -95,7 +81,7 @@ def window(text: str, width: int, focus: tuple[int, int]) -> Window:
     line, is_cut = lay_out(text[skipped:end]), len(text) > end
     total = line.columns[-1]
     if total <= width and not (skipped or is_cut):
-        return Window(line, 0, len(line.cells), skipped, is_cut)
+        return line
     first, last = line.column(focus[0] - skipped), line.column(focus[1] - skipped)
     room = width - 2
     lead = max(0, (room - (last - first)) // 2) if last - first <= room else room // 8
@@ -104,7 +90,7 @@ def window(text: str, width: int, focus: tuple[int, int]) -> Window:
     end = start
     while end < len(line.cells) and line.columns[end + 1] - line.columns[start] <= room:
         end += 1
-    return Window(line, start, end, skipped, is_cut)
+    return Window(line.cells, line.columns, start, end, skipped, is_cut)
 
 
 def _visible(char: str) -> str:

@@ -28,19 +28,12 @@ class ChangedLine:
     focus: tuple[int, int] = (0, 0)
 
 
-@record()
-class Hunk:
-    source: SourceFile
-    changes: tuple[ChangedLine, ...]
-
-
-def hunks(fix: Fix) -> Iterator[Hunk]:
+def hunks(fix: Fix) -> Iterator[tuple[SourceFile, list[ChangedLine]]]:
     """Yields the fix in pieces, one for each run of touched lines, in order of files and lines."""
-    sources = list(dict.fromkeys(edit.span.source for edit in fix.edits))
-    for source in sources:
+    for source in dict.fromkeys(edit.span.source for edit in fix.edits):
         edits = sorted((e for e in fix.edits if e.span.source is source), key=lambda e: e.span.start)
         for cluster in _clusters(edits):
-            yield Hunk(source, tuple(_changes(source, cluster)))
+            yield source, list(_changes(source, cluster))
 
 
 def _clusters(edits: list[Edit]) -> Iterator[list[Edit]]:
@@ -129,7 +122,7 @@ class _Page:
         self.hunks = list(hunks(diagnostic.fix)) if diagnostic.fix else []
         self.marks = _by_source(diagnostic)
         numbers = [m.last for marks in self.marks.values() for m in marks]
-        numbers += [change.number for hunk in self.hunks for change in hunk.changes]
+        numbers += [change.number for _, changes in self.hunks for change in changes]
         self.gutter = len(str(max(numbers, default=0)))
         self.width = max(40, width - self.gutter - 3)
 
@@ -148,8 +141,11 @@ class _Page:
             yield self._bar()
         for kind, text in notes:
             yield from self._note(kind, text)
-        for hunk in self.hunks:
-            yield from self._hunk(hunk)
+        for source, changes in self.hunks:
+            if self.diagnostic.span is None or source is not self.diagnostic.span.source:
+                yield " " * self.gutter + self.style.gutter(":::") + " " + escape(source.name)
+            yield self._bar()
+            yield from map(self._change, changes)
 
     def _headline(self) -> str:
         d = self.diagnostic
@@ -170,14 +166,6 @@ class _Page:
         for line in escape(text).split("\n"):
             yield lead + line
             lead = " " * (self.gutter + 5 + len(kind))
-
-    def _hunk(self, hunk: Hunk) -> Iterator[str]:
-        main = self.diagnostic.span.source if self.diagnostic.span else None
-        if hunk.source is not main:
-            yield " " * self.gutter + self.style.gutter(":::") + " " + escape(hunk.source.name)
-        yield self._bar()
-        for change in hunk.changes:
-            yield self._change(change)
 
     def _change(self, change: ChangedLine) -> str:
         text = window(change.text, self.width, change.focus).text
@@ -235,12 +223,12 @@ def _place(span: Span | None) -> dict[str, Any]:
 
 
 def _fix(fix: Fix) -> dict[str, Any]:
-    return {"title": fix.title, "sure": fix.is_sure, "edits": [_edit(edit) for edit in fix.edits]}
-
-
-def _edit(edit: Edit) -> dict[str, Any]:
-    span = edit.span
-    return {**_place(span), "start": span.start, "end": span.end, "replacement": edit.replacement}
+    edits = (
+        {**_place(span), "start": span.start, "end": span.end, "replacement": edit.replacement}
+        for edit in fix.edits
+        for span in [edit.span]
+    )
+    return {"title": fix.title, "sure": fix.is_sure, "edits": list(edits)}
 
 
 # --- Diagnostics for a language model: short, without pictures made of characters, the fix as text to write.
@@ -277,12 +265,9 @@ def compact(diagnostics: Sequence[Diagnostic]) -> str:
     main = names.most_common(1)[0][0] if names else ""
     blocks = ["\n".join(_lines(d, main)) for d in shown]
     left = Counter(d.code for d in ranked) - Counter(d.code for d in shown)
-    blocks += [f"and {count} more {code}{_alike(code, shown)}" for code, count in left.items()]
-    return "\n\n".join(blocks)
-
-
-def _alike(code: str, shown: Iterable[Diagnostic]) -> str:
-    return ", to be mended alike" if any(d.code == code for d in shown) else ""
+    told = {d.code for d in shown}
+    alike = {code: ", to be mended alike" * (code in told) for code in left}
+    return "\n\n".join([*blocks, *(f"and {count} more {code}{alike[code]}" for code, count in left.items())])
 
 
 def _lines(d: Diagnostic, main: str) -> Iterator[str]:
@@ -293,26 +278,22 @@ def _lines(d: Diagnostic, main: str) -> Iterator[str]:
     if d.label:
         yield f"  why: {_one_line(d.label)}"
     for label in d.secondary:
-        yield f"  {_remark(label, main)}"
+        text = f": {_one_line(label.text)}" if label.text else ""
+        yield f"  {_place_in_words(label.span, main)}{text} | {_quoted(label.span)}"
     for hint in d.hints:
         yield f"  hint: {_one_line(hint)}"
     if d.fix:
         yield from _fix_in_words(d.fix, main)
 
 
-def _remark(label: Label, main: str) -> str:
-    text = f": {_one_line(label.text)}" if label.text else ""
-    return f"{_place_in_words(label.span, main)}{text} | {_quoted(label.span)}"
-
-
 def _fix_in_words(fix: Fix, main: str) -> Iterator[str]:
     """Yields the lines as the fix leaves them, without unchanged ones in between."""
     lead = f"  fix ({_one_line(fix.title)}): "
-    for hunk in hunks(fix):
-        file = "" if hunk.source.name == main else f"{escape(hunk.source.name)} "
-        gone = [c for c in hunk.changes if c.sign == "-"]
-        come = [c.text for c in hunk.changes if c.sign == "+"]
-        above = next((c.number for c in hunk.changes if c.sign == " "), 0)
+    for source, changes in hunks(fix):
+        file = "" if source.name == main else f"{escape(source.name)} "
+        gone = [c for c in changes if c.sign == "-"]
+        come = [c.text for c in changes if c.sign == "+"]
+        above = next((c.number for c in changes if c.sign == " "), 0)
         if not gone:
             yield f"{lead}after {file}line {above} write"
         else:

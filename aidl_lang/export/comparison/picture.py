@@ -22,6 +22,7 @@ from aidl_lang.export.marks import (
     Picture,
     Text,
     arrowhead,
+    corners,
     polygon,
     widened,
 )
@@ -177,9 +178,7 @@ def _legend(regions: dict[str, Region], box: Bounds, size: float) -> tuple[tuple
     for name, region in regions.items():
         if not region:
             continue
-        swatch = polygon(
-            (left, top - text), (left + 2 * text, top - text), (left + 2 * text, top), (left, top)
-        )
+        swatch = polygon(*corners((left, top - text, left + 2 * text, top)))
         marks += _filled(name, Region((swatch,)), size)
         marks.append(Area(swatch, None, _ink(name, size)))
         label = Text(

@@ -33,7 +33,7 @@ from aidl_lang.export.drafting.tables import (
     written,
 )
 from aidl_lang.export.job import ExportError, Job
-from aidl_lang.export.marks import Area, Curves, Group, Ink, Mark, Picture, Placing, Text, widened
+from aidl_lang.export.marks import Area, Curves, Group, Ink, Mark, Picture, Placing, Text, corners, widened
 from aidl_lang.geometry.curves import Arc, Bounds, Circle, Line, Piece, Vec, bounds, point, union_bounds
 from aidl_lang.geometry.dimensions import mirror_levels
 from aidl_lang.geometry.dimensions.sketch import is_half_round
@@ -72,7 +72,11 @@ class DrawnView:
 def drawn_view(view: View, factor: float, digits: float) -> DrawnView:
     """Draws a view. `factor`: millimetres on paper for one of the part; `digits`: height of the values."""
     pen = Pen(digits / HEIGHT / factor)
-    signs = tuple(_signs(view, factor))
+    signs = tuple(
+        Text((x + reach, y + reach), hole.sign, SMALL / CAPITAL / factor, BLACK)
+        for hole in view.holes
+        for (x, y), reach in [(hole.circle.center, 0.72 * hole.circle.radius + 0.8 / factor)]
+    )
     callouts = [
         Callout(f"item-{number}", str(number), tuple(_spots(body.box, body.region.faces[0].outer.pieces)))
         for number, body in view.balloons
@@ -112,12 +116,6 @@ def _spots(box: Bounds, pieces: Sequence[Piece]) -> Iterator[tuple[Vec, Vec]]:
                 out = (tip[0] - (left + right) / 2) * way[0] + (tip[1] - (bottom + top) / 2) * way[1]
                 if out > 0:
                     yield tip, way
-
-
-def _signs(view: View, factor: float) -> Iterator[Text]:
-    for hole in view.holes:
-        (x, y), reach = hole.circle.center, 0.72 * hole.circle.radius + 0.8 / factor
-        yield Text((x + reach, y + reach), hole.sign, SMALL / CAPITAL / factor, BLACK)
 
 
 def _datum(view: View, factor: float) -> Iterator[Mark]:
@@ -378,9 +376,8 @@ def _plain(name: str) -> str:
 
 
 def _page(content: Content, laid: _Laid, title: Mapping[str, str], standard: Standard) -> Picture:
-    left, bottom, right, top = laid.paper.frame
-    corners = (left, bottom), (right, bottom), (right, top), (left, top)
-    frame = outline(*corners, width=2 * WIDE, role="frame")
+    _, bottom, right, _ = laid.paper.frame
+    frame = outline(*corners(laid.paper.frame), width=2 * WIDE, role="frame")
     groups = [Group("frame", (frame,), {"class": "frame"})]
     for number, (corner, view) in enumerate(laid.views, 1):
         groups += view.at(corner, number)

@@ -7,7 +7,7 @@ from dataclasses import field
 
 from aidl_lang.common.materials import PAPERS
 from aidl_lang.common.records import record
-from aidl_lang.export.marks import Curves, Group, Ink, Mark, Text, polygon
+from aidl_lang.export.marks import Curves, Group, Ink, Mark, Text, corners, polygon
 from aidl_lang.geometry.curves import Bounds, Circle, Line, Vec
 
 # --- Paper, frames and scales of technical drawings: ISO 5457 and 5455, and what is usual beside them.
@@ -215,8 +215,7 @@ def title_block(title: Mapping[str, str], left: float, bottom: float, is_first_a
                 marks.append(written(value, (x + _AIR, top - _CELL + 1.3), height, room=room))
             x += width
     marks.append(lines(segments))
-    right, top = left + WIDTH, top + _CELL * 2
-    marks.append(outline((left, bottom), (right, bottom), (right, top), (left, top), width=WIDE))
+    marks.append(outline(*corners((left, bottom, left + WIDTH, top + _CELL * 2)), width=WIDE))
     return Group("title-block", tuple(marks), {"class": "title-block"})
 
 

@@ -11,9 +11,8 @@ from typing import Any, TypeAlias, TypeVar, cast
 
 from aidl_lang import pipeline
 from aidl_lang.building.model import Knob
-from aidl_lang.common.crew import Broke, Crew
 from aidl_lang.common.diagnostics import Diagnostic, Severity
-from aidl_lang.common.processes import Guarded, Limit, count
+from aidl_lang.common.processes import Broke, Crew, Guarded, Limit, count
 from aidl_lang.common.prose import first_few, literal
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint

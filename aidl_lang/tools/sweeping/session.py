@@ -12,9 +12,8 @@ from typing import TYPE_CHECKING, Any
 
 from aidl_lang import pipeline
 from aidl_lang.building.model import Knob
-from aidl_lang.common.crew import Broke, Crew
 from aidl_lang.common.diagnostics import AidlError, has_errors
-from aidl_lang.common.processes import Engine, Guarded, count
+from aidl_lang.common.processes import Broke, Crew, Engine, Guarded, count
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
 from aidl_lang.common.source import SourceFile
@@ -95,7 +94,7 @@ def engine(
     if name == LOCAL:
         wanted = jobs or count()
         return Guarded(max(1, min(wanted, most or wanted)), preloads(outputs))
-    from aidl_lang.common.crew import Cluster
+    from aidl_lang.common.processes import Cluster
 
     if jobs is not None:
         message = "the workers of a cluster are as many as it has"
