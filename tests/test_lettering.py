@@ -20,7 +20,7 @@ from aidl_lang.common import lettering
 from aidl_lang.common.resources import resource
 from aidl_lang.common.source import SourceFile
 from aidl_lang.geometry.boolean import lettered_region, stencilled
-from aidl_lang.geometry.curves import Bezier, Line, reverse
+from aidl_lang.geometry.curves import Bezier, Line
 from aidl_lang.geometry.region import loop_area
 from tests.amount import TRIES_ALL, tries
 
@@ -112,7 +112,7 @@ def test_letters_that_may_meet_are_arranged() -> None:
     apart = lettered_region([first, second])
     assert apart is not None
     assert [len(face.holes) for face in apart.faces] == [2, 1]
-    turned = lettered_region([[reverse(piece) for piece in reversed(letter)] for letter in (first, second)])
+    turned = lettered_region([[piece.reversed() for piece in reversed(letter)] for letter in (first, second)])
     assert turned is not None
     areas = [sum(map(loop_area, face.loops)) for region in (apart, turned) for face in region.faces]
     assert areas[:2] == pytest.approx(areas[2:])

@@ -16,7 +16,7 @@ from aidl_lang.common.running import checkpoint
 from aidl_lang.export import marks
 from aidl_lang.export.job import Job
 from aidl_lang.export.marks import CHARACTER, Dot, Frame, Mark, Text, widened
-from aidl_lang.geometry.curves import Bounds, Vec, are_near, bounds, union_bounds
+from aidl_lang.geometry.curves import Bounds, Vec, are_near, union_bounds
 from aidl_lang.geometry.drawing import Body, Drawing
 from aidl_lang.geometry.nearness import from_sides, inside
 from aidl_lang.geometry.region import COARSE, Region, piece_points, region_polygons
@@ -52,7 +52,7 @@ def labels(job: Job) -> Iterator[Text]:
 def _lines_on(body: Body, drawing: Drawing) -> list[NDArray[np.float64]]:
     """Returns what is engraved about a body, as polylines."""
     pieces = (piece for stroke in drawing.strokes for piece in stroke.pieces)
-    return [piece_points(piece, COARSE) for piece in pieces if are_near(bounds(piece), body.box)]
+    return [piece_points(piece, COARSE) for piece in pieces if are_near(piece.box, body.box)]
 
 
 def _room(region: Region, engraved: list[NDArray[np.float64]], width: float) -> tuple[Vec, float]:
@@ -312,7 +312,7 @@ def _box_of(things: Mapping[str, _Thing], path: str) -> Bounds | None:
     value = thing.values.get(path.removeprefix(known).lstrip(".") or "at")
     if _is_point(value):
         return value[0], value[1], value[0], value[1]
-    boxes = [bounds(part.curve) for part in thing.walk() if part.curve is not None]
+    boxes = [part.curve.box for part in thing.walk() if part.curve is not None]
     return union_bounds(boxes) if boxes else None
 
 

@@ -33,17 +33,7 @@ from aidl_lang.export.marks import (
 )
 from aidl_lang.export.overlay import explain, labels
 from aidl_lang.geometry.boolean import united, without
-from aidl_lang.geometry.curves import (
-    Bounds,
-    Line,
-    Piece,
-    Vec,
-    all_bounds,
-    bounds,
-    larger_side,
-    points,
-    union_bounds,
-)
+from aidl_lang.geometry.curves import Bounds, Line, Piece, Vec, all_bounds, larger_side, union_bounds
 from aidl_lang.geometry.drawing import Body, Drawing, Stroke
 from aidl_lang.geometry.nearness import inside
 from aidl_lang.geometry.region import Polygon, Region, face_polygons, piece_points, region_bounds
@@ -465,7 +455,7 @@ class Halos:
 
 
 def _box(stroke: Stroke) -> Bounds:
-    return union_bounds([bounds(piece) for piece in stroke.pieces])
+    return union_bounds([piece.box for piece in stroke.pieces])
 
 
 # --- Gradients of fills: light and shade on round things, and fills that go over into another colour.
@@ -500,7 +490,7 @@ def gradient_of(shade: Shade, color: str, outline: Sequence[Piece]) -> Gradient:
         spot = (left + _SPOT[0] * width, bottom + _SPOT[1] * height)
         return Gradient(spot, spot, stops, _REACH * max(width, height))
     ways = np.array([math.cos(math.radians(shade.way)), math.sin(math.radians(shade.way))])
-    spots = np.concatenate([points(piece, _STEPS) for piece in outline])
+    spots = np.concatenate([piece.points(_STEPS) for piece in outline])
     along = spots @ ways
     middle = np.array([(left + right) / 2, (bottom + top) / 2])
     start, end = (middle + (reach - middle @ ways) * ways for reach in (along.min(), along.max()))

@@ -47,19 +47,7 @@ from aidl_lang.common.running import checkpoint
 from aidl_lang.export.job import Exported, ExportError, Job
 from aidl_lang.export.mesh import Recess, placed_bodies, placed_strokes
 from aidl_lang.geometry.boolean import jointed
-from aidl_lang.geometry.curves import (
-    TAU,
-    Arc,
-    Bezier,
-    Circle,
-    Ellipse,
-    EllipseArc,
-    Line,
-    Piece,
-    Vec,
-    ends,
-    round_range,
-)
+from aidl_lang.geometry.curves import TAU, Arc, Bezier, Circle, Ellipse, EllipseArc, Line, Piece, Vec
 from aidl_lang.geometry.parts import Plane, placement_notes
 from aidl_lang.geometry.region import Face, Loop
 from aidl_lang.geometry.styles import Style
@@ -110,13 +98,13 @@ class Shapes:
 
     def curves(self, pieces: Iterable[Piece]) -> list[TopoDS_Edge]:
         self._vertices.clear()
-        return [self._edge(piece, *map(self._vertex, ends(piece))) for piece in map(_upright, pieces)]
+        return [self._edge(piece, *map(self._vertex, piece.ends)) for piece in map(_upright, pieces)]
 
     def _wire(self, loop: Loop) -> TopoDS_Shape:
         made = TopoDS_Wire()
         self._build.MakeWire(made)
         pieces = [_upright(piece) for piece in loop.pieces]
-        corners = [self._vertex(ends(piece)[0]) for piece in pieces]
+        corners = [self._vertex(piece.ends[0]) for piece in pieces]
         for piece, start, end in zip(pieces, corners, corners[1:] + corners[:1], strict=True):
             self._build.Add(made, self._edge(piece, start, end))
         made.Closed(True)
@@ -181,7 +169,7 @@ def _curve(piece: Piece) -> tuple[Any, float, float]:
             for number, p in enumerate((p0, p1, p2, p3), 1):
                 poles.SetValue(number, _point(p))
             return Geom_BezierCurve(poles), 0.0, 1.0
-    first, sweep = round_range(piece)
+    first, sweep = piece.range
     first = min(first, first + sweep) % TAU
     last = first + abs(sweep)
     match piece:

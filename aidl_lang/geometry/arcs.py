@@ -16,22 +16,7 @@ import numpy as np
 
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
-from aidl_lang.geometry.curves import (
-    TAU,
-    Arc,
-    Bezier,
-    Circle,
-    Floats,
-    Line,
-    Piece,
-    Vec,
-    ends,
-    point,
-    points,
-    reverse,
-    round_range,
-    turn_between,
-)
+from aidl_lang.geometry.curves import TAU, Arc, Bezier, Circle, Floats, Line, Piece, Vec, turn_between
 from aidl_lang.geometry.finishing import direction
 from aidl_lang.geometry.nearness import from_sides
 from aidl_lang.geometry.region import Face, Loop, Region, length
@@ -80,11 +65,11 @@ class _Stretch:
 
     @property
     def start(self) -> Vec:
-        return ends(self.pieces[0])[0]
+        return self.pieces[0].ends[0]
 
     @property
     def end(self) -> Vec:
-        return ends(self.pieces[-1])[1]
+        return self.pieces[-1].ends[1]
 
     @property
     def length(self) -> float:
@@ -96,7 +81,7 @@ class _Outline:
 
     def __init__(self, pieces: Sequence[Piece], closed: bool, tolerance: float) -> None:
         self._whole, self._closed = tuple(pieces), closed
-        spots = np.concatenate([points(p, _PROBES) for p in pieces])
+        spots = np.concatenate([p.points(_PROBES) for p in pieces])
         size = float(np.ptp(spots, axis=0).max())
         self._tolerance = min(max(tolerance, FINEST * size), COARSEST * size)
         self._shortest, self._joined = SHORTEST * self._tolerance, JOINED * self._tolerance
@@ -180,7 +165,7 @@ class _Outline:
         first = stretch.pieces[0]
         if len(stretch.pieces) == 1 and isinstance(first, Line):
             yield Line(start, end)
-        elif len(stretch.pieces) == 1 and isinstance(first, Arc) and ends(first) == (start, end):
+        elif len(stretch.pieces) == 1 and isinstance(first, Arc) and first.ends == (start, end):
             yield first
         else:
             fit = _Fit(stretch.pieces, start, end, self._tolerance)
@@ -205,10 +190,10 @@ class _Fit:
         spots, self._at = [], list[tuple[Piece, float]]()
         for piece in pieces:
             count = _samples(piece, tolerance)
-            spots.append(points(piece, np.arange(count) / count))
+            spots.append(piece.points(np.arange(count) / count))
             self._at += [(piece, k / count) for k in range(count)]
         self._at.append((pieces[-1], 1.0))
-        spots.append(np.array([point(pieces[-1], 1.0)]))
+        spots.append(np.array([pieces[-1].point(1.0)]))
         self._spots = np.concatenate(spots)
         steps = np.hypot(*np.diff(self._spots, axis=0).T)
         self._along = np.concatenate(([0.0], np.cumsum(steps)))
@@ -258,7 +243,7 @@ class _Fit:
         off = np.minimum.reduce([_distances(arc, spots) for arc in arcs])
         if off.max() > self._tolerance:
             return False
-        probes = np.concatenate([points(arc, _PROBES) for arc in arcs])
+        probes = np.concatenate([arc.points(_PROBES) for arc in arcs])
         gaps = from_sides(probes[:, None, :] - spots[:-1], np.diff(spots, axis=0)).min(axis=1)
         return bool(gaps.max() <= self._tolerance)
 
@@ -272,9 +257,8 @@ def _samples(piece: Piece, tolerance: float) -> int:
         bend = float(np.hypot(*np.diff(p, n=2, axis=0).T).max())
         count = math.sqrt(0.75 * bend / (_GRAIN * tolerance))
     else:
-        radius = piece.radius if isinstance(piece, Arc | Circle) else max(piece.rx, piece.ry)
-        sweep = abs(round_range(piece)[1])
-        count = sweep * math.sqrt(radius / (8 * _GRAIN * tolerance))
+        _, rx, ry, *_, sweep = piece.frame
+        count = abs(sweep) * math.sqrt(max(rx, ry) / (8 * _GRAIN * tolerance))
     return max(_FEWEST, min(_MOST, math.ceil(count)))
 
 
@@ -303,7 +287,7 @@ def _pair(start: Vec, leaving: Vec, end: Vec, arriving: Vec) -> list[Piece] | No
         return None
     if isinstance(first, Line) and isinstance(second, Line):
         return [Line(start, end)]
-    return [first, reverse(second)]
+    return [first, second.reversed()]
 
 
 def _arc(start: Vec, way: Vec, end: Vec) -> Arc | Line | None:
@@ -323,7 +307,7 @@ def _arc(start: Vec, way: Vec, end: Vec) -> Arc | Line | None:
 
 
 def _distances(piece: Piece, spots: Floats) -> Floats:
-    (x0, y0), (x1, y1) = ends(piece)
+    (x0, y0), (x1, y1) = piece.ends
     if isinstance(piece, Line):
         return from_sides(spots - (x0, y0), np.array((x1 - x0, y1 - y0)))
     assert isinstance(piece, Arc)
@@ -369,7 +353,7 @@ def _without(loop: Loop, cut: float, slits: list[Slit], *, is_hole: bool) -> Loo
     if is_hole and len(pieces) == 4:
         for k in (0, 1):
             a, tip, b, end = (*pieces[k:], *pieces[:k])
-            if (slit := _slit((a, tip, b), cut, point(end, 0.5), -cut / 2)) is not None:
+            if (slit := _slit((a, tip, b), cut, end.point(0.5), -cut / 2)) is not None:
                 slits.append(slit)
                 return None
     first = next((k for k in (-2, -1) if _open(pieces[k:] + pieces[:k], cut) is not None), 0)
@@ -391,7 +375,7 @@ def _open(pieces: Sequence[Piece], cut: float) -> tuple[Slit, Line] | None:
     if len(pieces) < 3 or not isinstance(pieces[0], Line) or not isinstance(pieces[2], Line):
         return None
     mouth = Line(pieces[0].start, pieces[2].end)
-    slit = _slit(pieces[:3], cut, point(mouth, 0.5), cut / 2)
+    slit = _slit(pieces[:3], cut, mouth.point(0.5), cut / 2)
     return None if slit is None else (slit, mouth)
 
 
@@ -411,7 +395,7 @@ def _slit(sides: Sequence[Piece], cut: float, end: Vec, beyond: float) -> Slit |
         return None
     if abs(ax * by - ay * bx) > _PARALLEL * long * other or ax * bx + ay * by > 0:
         return None
-    x, y = start = point(tip, 0.5)
+    x, y = start = tip.point(0.5)
     far = math.dist(start, end)
     ux, uy = (end[0] - x) / far, (end[1] - y) / far
     ends = (x + ux * cut / 2, y + uy * cut / 2), (end[0] + ux * beyond, end[1] + uy * beyond)

@@ -11,19 +11,7 @@ from itertools import count
 from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.prose import named
 from aidl_lang.common.records import record
-from aidl_lang.geometry.curves import (
-    TAU,
-    Arc,
-    Bezier,
-    Line,
-    Piece,
-    Vec,
-    bounds,
-    ends,
-    is_closed,
-    larger_side,
-    part,
-)
+from aidl_lang.geometry.curves import TAU, Arc, Bezier, Line, Piece, Vec, larger_side
 from aidl_lang.geometry.faces import OwnFace, OwnFaces, Shape, own_faces, union_of
 from aidl_lang.geometry.nearness import near_pairs
 from aidl_lang.geometry.network import Network
@@ -461,7 +449,7 @@ def _merged(network: Network, edges: list[int]) -> Iterator[Piece]:
         if following and following.curve == edge.curve and following.t0 == edge.t1:
             continue
         curve, nodes = network.curves[edge.curve], network.nodes
-        yield part(curve, start.t0, edge.t1, nodes[start.start], nodes[edge.end])
+        yield curve.part(start.t0, edge.t1, nodes[start.start], nodes[edge.end])
         start = None
 
 
@@ -570,12 +558,12 @@ def welded_gaps(
 
 def ends_of(network: Network, geometry: SolvedGeometry, number: int) -> Iterator[End]:
     """Yields both ends of a curve."""
-    for at, is_last in zip(ends(network.curves[number]), (False, True), strict=True):
+    for at, is_last in zip(network.curves[number].ends, (False, True), strict=True):
         yield End(geometry, number, at, is_last)
 
 
 def _ends_of_open(network: Network, shapes: Iterable[Shape]) -> Iterator[End]:
-    leaves = (leaf for shape in shapes for leaf in shape.leaves if not is_closed(network.curves[leaf[1]]))
+    leaves = (leaf for shape in shapes for leaf in shape.leaves if not network.curves[leaf[1]].is_closed)
     return (end for leaf in leaves for end in ends_of(network, *leaf))
 
 
@@ -592,9 +580,9 @@ def _nearest_first(found: Sequence[End], widest: float) -> Iterator[tuple[End, E
 
 def _with_end(curve: Piece, is_last: bool, kept: End, widest: float) -> Piece | None:
     """Returns such a curve with its end elsewhere; None if that would change more than its end."""
-    if larger_side(bounds(curve)) <= 10 * widest:
+    if larger_side(curve.box) <= 10 * widest:
         return None
-    start, end = ends(curve)
+    start, end = curve.ends
     start, end = (start, kept.at) if is_last else (kept.at, end)
     if isinstance(curve, Line):
         return Line(start, end)

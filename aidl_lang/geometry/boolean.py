@@ -23,18 +23,7 @@ from aidl_lang.geometry.curves import (
     Piece,
     Vec,
     all_bounds,
-    bounds,
-    derivative,
-    ends,
-    is_closed,
     larger_side,
-    locate,
-    nearest,
-    part,
-    point,
-    points,
-    reverse,
-    second_derivative,
     union_bounds,
 )
 from aidl_lang.geometry.intersect import Crossing, Table, all_intersections, meet
@@ -122,7 +111,7 @@ def piece_distance(a: Piece, b: Piece) -> Closest:
 
 
 def _to(curve: Piece, p: Vec) -> Closest:
-    q = point(curve, nearest(curve, p))
+    q = curve.point(curve.nearest(p))
     return math.dist(p, q), p, q
 
 
@@ -130,35 +119,35 @@ def _candidates(a: Piece, b: Piece) -> list[Vec]:
     """Returns points of `a` nearest to `b` if any are: its ends, and those where the normals agree."""
     if not isinstance(a, Line | Arc | Circle) or not isinstance(b, Line | Arc | Circle):
         return _sampled_candidates(a, b)
-    spots = [] if is_closed(a) else list(ends(a))
+    spots = [] if a.is_closed else list(a.ends)
     if isinstance(b, Line):
         return spots
     if isinstance(a, Line):
-        return [*spots, point(a, nearest(a, b.center))]
+        return [*spots, a.point(a.nearest(b.center))]
     dx, dy = b.center[0] - a.center[0], b.center[1] - a.center[1]
     d = math.hypot(dx, dy)
     ux, uy = (dx / d, dy / d) if d else (1.0, 0.0)
     for sign in (-1, 1):
         p = a.center[0] + sign * a.radius * ux, a.center[1] + sign * a.radius * uy
-        spots.append(point(a, nearest(a, p)))
+        spots.append(a.point(a.nearest(p)))
     return spots
 
 
 def _sampled_candidates(a: Piece, b: Piece) -> list[Vec]:
     """Returns the ends of a, and the nearest of a sampling, polished."""
-    away = ((points(a, _SAMPLES)[:, None, :] - points(b, _SAMPLES)[None, :, :]) ** 2).sum(axis=2)
+    away = ((a.points(_SAMPLES)[:, None, :] - b.points(_SAMPLES)[None, :, :]) ** 2).sum(axis=2)
     i, j = divmod(int(np.argmin(away)), len(_SAMPLES))
     t = _facing(a, b, float(_SAMPLES[i]), float(_SAMPLES[j]))
     if t is not None:
-        return [*ends(a), point(a, t)]
-    if {i, j} & {0, len(_SAMPLES) - 1} and not is_closed(a) and not is_closed(b):
-        return list(ends(a))  # an end is nearest, of one or of the other
-    p = point(a, float(_SAMPLES[i]))
+        return [*a.ends, a.point(t)]
+    if {i, j} & {0, len(_SAMPLES) - 1} and not a.is_closed and not b.is_closed:
+        return list(a.ends)  # an end is nearest, of one or of the other
+    p = a.point(float(_SAMPLES[i]))
     for _ in range(50):  # by projecting to and fro
-        before, p = p, point(a, nearest(a, point(b, nearest(b, p))))
+        before, p = p, a.point(a.nearest(b.point(b.nearest(p))))
         if p == before:
             break
-    return [*ends(a), p]
+    return [*a.ends, p]
 
 
 def _facing(a: Piece, b: Piece, t: float, s: float) -> float | None:
@@ -166,9 +155,9 @@ def _facing(a: Piece, b: Piece, t: float, s: float) -> float | None:
     and e·b' = 0 with e = b - a from parameters nearby. None if that leads off the curves, or to no minimum.
     """
     for _ in range(30):
-        (x, y), (u, v) = point(a, t), point(b, s)
-        (ax, ay), (bx, by) = derivative(a, t), derivative(b, s)
-        (cx, cy), (dx, dy) = second_derivative(a, t), second_derivative(b, s)
+        (x, y), (u, v) = a.point(t), b.point(s)
+        (ax, ay), (bx, by) = a.derivative(t), b.derivative(s)
+        (cx, cy), (dx, dy) = a.second_derivative(t), b.second_derivative(s)
         ex, ey = u - x, v - y
         f, g = -(ex * ax + ey * ay), ex * bx + ey * by
         ftt = ax * ax + ay * ay - ex * cx - ey * cy
@@ -272,7 +261,7 @@ def jointed(face: Face) -> Face:
         number = numbers.stop
         pieces = [network.piece(use) for k in numbers for use in network.uses[k]]
         if loop.reversed and len(pieces) > 1:
-            loops.append(Loop(tuple(reverse(piece) for piece in reversed(pieces))))
+            loops.append(Loop(tuple(piece.reversed() for piece in reversed(pieces))))
         else:
             loops.append(Loop(tuple(pieces), loop.reversed))
     return Face(loops[0], tuple(loops[1:]))
@@ -309,11 +298,11 @@ def clipped_each(curves: Sequence[Piece], region: Region, *, with_border: bool =
     """Returns for each curve what of it lies inside, or along the border where that counts as inside."""
     if not curves or not region:
         return [Clipped((), (curve,), is_whole=False) for curve in curves]
-    boxes = np.concatenate((np.array([bounds(c) for c in curves]), region.boxes))
+    boxes = np.concatenate((np.array([c.box for c in curves]), region.boxes))
     size = float((boxes[:, 2:].max(axis=0) - boxes[:, :2].min(axis=0)).max()) or 1.0
     tolerance = RELATIVE_TOLERANCE * size
     stretches = stretches_beside(curves, region.pieces, boxes, tolerance)
-    spots = [point(c, s.middle) for c, of in zip(curves, stretches, strict=True) for s in of]
+    spots = [c.point(s.middle) for c, of in zip(curves, stretches, strict=True) for s in of]
     polygons = region_polygons(region, CHORD * size)
     within = iter(inside(polygons, np.array(spots).reshape(-1, 2)).tolist())
     return [
@@ -344,25 +333,25 @@ def _stretches(
     """Returns a curve in parts between the places where it meets the border."""
     checkpoint()
     cuts = [(t, p) for t, _, p in crossings]
-    spots = (p for border in borders for p in ends(border))
-    cuts += [(t, p) for p in spots if (t := locate(curve, p, tolerance)) is not None]
-    start, end = ends(curve)
+    spots = (p for border in borders for p in border.ends)
+    cuts += [(t, p) for p in spots if (t := curve.locate(p, tolerance)) is not None]
+    start, end = curve.ends
     cuts.sort(key=lambda cut: cut[0])
-    if cuts and is_closed(curve):
+    if cuts and curve.is_closed:
         cuts.append((cuts[0][0] + 1, cuts[0][1]))
     else:
         cuts = [(0.0, start), *cuts, (1.0, end)]
     apart = cuts[:1]
     for t, p in cuts[1:]:
         t0, before = apart[-1]
-        if max(math.dist(before, point(curve, (t0 + t) / 2)), math.dist(before, p)) > tolerance:
+        if max(math.dist(before, curve.point((t0 + t) / 2)), math.dist(before, p)) > tolerance:
             apart.append((t, p))
         elif t == cuts[-1][0] and len(apart) > 1:
             apart[-1] = (t, p)
     found = []
     for (t0, p), (t1, q) in pairwise(apart):
-        middle = point(curve, (t0 + t1) / 2)
-        on_border = any(locate(border, middle, 2 * tolerance) is not None for border in borders)
+        middle = curve.point((t0 + t1) / 2)
+        on_border = any(border.locate(middle, 2 * tolerance) is not None for border in borders)
         found.append(Stretch(t0, t1, p, q, on_border))
     return found
 
@@ -377,13 +366,13 @@ def _clipped(
             before = same.pop()
             stretch = Stretch(before.t0, stretch.t1, before.start, stretch.end, on_border=False)
         same.append(stretch)
-    for same in sides if is_closed(curve) else ():
+    for same in sides if curve.is_closed else ():
         if len(same) > 1 and same[-1].t1 == same[0].t0 + 1:
             last, first = same.pop(), same[0]
             same[0] = Stretch(last.t0, first.t1 + 1, last.start, first.end, on_border=False)
     is_whole = all(s.on_border or is_in for s, is_in in zip(stretches, within, strict=True))
     inner, outer = (
-        tuple(curve if s.t1 - s.t0 == 1 else part(curve, s.t0, s.t1, s.start, s.end) for s in same)
+        tuple(curve if s.t1 - s.t0 == 1 else curve.part(s.t0, s.t1, s.start, s.end) for s in same)
         for same in sides
     )
     return Clipped(inner, outer, is_whole)
@@ -504,11 +493,11 @@ def lettered_region(letters: Sequence[Sequence[Piece]]) -> Region | None:
     for letter in letters:
         checkpoint()
         contours = list(_contours(letter))
-        if any(ends(contour[0])[0] != ends(contour[-1])[1] for contour in contours):
+        if any(contour[0].ends[0] != contour[-1].ends[1] for contour in contours):
             return None
         areas = [loop_area(Loop(contour)) for contour in contours]
         sense = math.copysign(1.0, max(areas, key=abs))
-        turned = [c if sense > 0 else tuple(reverse(piece) for piece in reversed(c)) for c in contours]
+        turned = [c if sense > 0 else tuple(piece.reversed() for piece in reversed(c)) for c in contours]
         loops = (closed_loop(contour, tolerance) for contour in turned)
         faces += faces_of([(sense * area, loop) for area, loop in zip(areas, loops, strict=True)])
     return Region(tuple(sorted(faces, key=lambda face: first_point(face.outer))))
@@ -579,7 +568,7 @@ def _contours(outline: Sequence[Piece]) -> Iterator[tuple[Piece, ...]]:
     """Yields the runs of curves of which each begins where the one before it ends."""
     first = 0
     for k, piece in enumerate(outline):
-        is_closed = ends(outline[first])[0] == ends(piece)[1]
-        if is_closed or k + 1 == len(outline) or ends(outline[k + 1])[0] != ends(piece)[1]:
+        is_closed = outline[first].ends[0] == piece.ends[1]
+        if is_closed or k + 1 == len(outline) or outline[k + 1].ends[0] != piece.ends[1]:
             yield tuple(outline[first : k + 1])
             first = k + 1

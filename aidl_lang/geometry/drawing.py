@@ -33,17 +33,7 @@ from aidl_lang.geometry.bodies import (
     without_gaps,
 )
 from aidl_lang.geometry.boolean import Contact, Contacts, Solid, contacts, lettered_region
-from aidl_lang.geometry.curves import (
-    Bounds,
-    Piece,
-    all_bounds,
-    bounds,
-    has_extent,
-    is_finite,
-    larger_side,
-    union_bounds,
-    usable,
-)
+from aidl_lang.geometry.curves import Bounds, Piece, all_bounds, has_extent, larger_side, union_bounds, usable
 from aidl_lang.geometry.faces import ENGRAVED, Shape, own_faces, region_of, union_of
 from aidl_lang.geometry.legibility import (
     COVERED,
@@ -219,7 +209,7 @@ def draw(model: SolvedModel) -> tuple[Drawing, Findings]:
     root, unusable = model.root, list[Diagnostic]()
     (curves, boxes), ink, shapes, engraved = _collect(root, unusable)
     clips, around = clip_shapes(root, len(curves))
-    boxes += map(bounds, around)
+    boxes += (piece.box for piece in around)
     network = Network([*curves, *around], boxes, union_bounds([*boxes, *ink[1]]))
     styles = styles_of(root)
     blind = [path for path, style in styles.items() if style.is_blind]
@@ -369,7 +359,7 @@ def _collect(root: SolvedStructure, notes: list[Diagnostic]) -> tuple[_Curves, _
             if leaves:
                 # A shape may have edges of no length (a rounded rectangle with half-round ends).
                 own.append(Shape(geometry, tuple(leaves)))
-                vanished = [leaf for leaf in vanished if leaf.curve and not is_finite(leaf.curve)]
+                vanished = [leaf for leaf in vanished if leaf.curve and not leaf.curve.is_finite()]
             notes += [unusable_note(structure, leaf, leaf if leaves else geometry) for leaf in vanished[:1]]
     return solid, ink, shapes, engraved
 

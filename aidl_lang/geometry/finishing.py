@@ -15,20 +15,7 @@ from functools import partial
 
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
-from aidl_lang.geometry.curves import (
-    Arc,
-    Circle,
-    Line,
-    Piece,
-    Vec,
-    derivative,
-    ends,
-    is_closed,
-    part,
-    point,
-    reverse,
-    turn_between,
-)
+from aidl_lang.geometry.curves import Arc, Circle, Line, Piece, Vec, turn_between
 from aidl_lang.geometry.intersect import circle_circle, line_circle
 from aidl_lang.geometry.region import length
 
@@ -113,10 +100,10 @@ class Result:
 
 def direction(curve: Piece, t: float) -> Vec:
     """Returns the unit tangent; at a stalled end of a Bézier curve that of the curve beside it."""
-    dx, dy = derivative(curve, t)
+    dx, dy = curve.derivative(t)
     size = math.hypot(dx, dy)
     if size == 0:
-        dx, dy = derivative(curve, t + 1e-6 if t < 0.5 else t - 1e-6)
+        dx, dy = curve.derivative(t + 1e-6 if t < 0.5 else t - 1e-6)
         size = math.hypot(dx, dy) or 1.0
     return dx / size, dy / size
 
@@ -125,13 +112,13 @@ def arms_at(curves: Sequence[Piece], p: Vec, tolerance: float) -> list[Arm]:
     """Returns the arms of all curves that end at a point, first those that arrive there."""
     found = []
     for number, curve in enumerate(curves):
-        if is_closed(curve):
+        if curve.is_closed:
             continue
-        start, end = ends(curve)
+        start, end = curve.ends
         if math.dist(start, p) <= tolerance:
             found.append(Arm(curve, number, first=True))
         if math.dist(end, p) <= tolerance:
-            found.append(Arm(reverse(curve), number, first=False))
+            found.append(Arm(curve.reversed(), number, first=False))
     return sorted(found, key=lambda arm: arm.first)
 
 
@@ -139,7 +126,7 @@ def corners_of(curves: Sequence[Piece], tolerance: float) -> list[Corner]:
     """Returns all points where exactly two curves end, at an angle."""
     found: list[Corner] = []
     seen: list[Vec] = []
-    for p in (p for c in curves if not is_closed(c) for p in ends(c)):
+    for p in (p for c in curves if not c.is_closed for p in c.ends):
         if any(math.dist(p, q) <= tolerance for q in seen):
             continue
         seen.append(p)
@@ -164,7 +151,7 @@ def finish(curves: Sequence[Piece], works: Sequence[Work]) -> Result:
     # By curve and end: the finish there, the share it takes, and the point where it touches.
     lost: dict[tuple[int, bool], tuple[Work, float, Vec]] = {}
     for made in done:
-        for arm, cut, at in zip(made.work.corner.arms, made.cuts, ends(made.piece), strict=True):
+        for arm, cut, at in zip(made.work.corner.arms, made.cuts, made.piece.ends, strict=True):
             lost[arm.number, arm.first] = made.work, cut, at
     numbers = sorted({number for number, _ in lost})
     for number in numbers:
@@ -174,11 +161,11 @@ def finish(curves: Sequence[Piece], works: Sequence[Work]) -> Result:
     if not result.failures:
         result.finished = done
         for number in numbers:
-            start, end = ends(curve := curves[number])
+            start, end = (curve := curves[number]).ends
             _, t0, start = lost.get((number, True), (None, 0.0, start))
             _, rest, end = lost.get((number, False), (None, 0.0, end))
             t1 = 1 - rest
-            result.curves[number] = part(curve, t0, t1, start, end) if t1 - t0 > _EXACT else None
+            result.curves[number] = curve.part(t0, t1, start, end) if t1 - t0 > _EXACT else None
     return result
 
 
@@ -207,12 +194,12 @@ def solve(work: Work) -> Finished | None:
         u, v = (_along(curve, size) for curve, size in zip((a, b), work.sizes, strict=True))
         if u is None or v is None:
             return None
-        return Finished(work, (u, v), Line(point(a, u), point(b, v)))
+        return Finished(work, (u, v), Line(a.point(u), b.point(v)))
     touch = None if corner.is_cusp else _round(corner, work.sizes[0])
     if touch is None:
         return None
     u, v, center = touch
-    return Finished(work, (u, v), _arc(corner, work.sizes[0], center, point(a, u), point(b, v)))
+    return Finished(work, (u, v), _arc(corner, work.sizes[0], center, a.point(u), b.point(v)))
 
 
 def _arc(corner: Corner, radius: float, center: Vec, p: Vec, q: Vec) -> Arc:
@@ -229,8 +216,8 @@ def _along(curve: Piece, distance: float) -> float | None:
         return None
     if isinstance(curve, Line | Arc):
         return min(1.0, distance / whole)
-    start = ends(curve)[0]
-    return largest(lambda t: length(part(curve, 0.0, t, start, point(curve, t))) < distance, 1.0)
+    start = curve.ends[0]
+    return largest(lambda t: length(curve.part(0.0, t, start, curve.point(t))) < distance, 1.0)
 
 
 def _round(corner: Corner, radius: float) -> tuple[float, float, Vec] | None:
@@ -278,7 +265,7 @@ def _meet(a: Line | Circle, b: Line | Circle) -> list[Vec]:
 def _foot(curve: Line | Arc, p: Vec) -> float | None:
     """Returns the parameter of the point of an arm nearest to p; None before its start."""
     if isinstance(curve, Line):
-        dx, dy = derivative(curve, 0.0)
+        dx, dy = curve.derivative(0.0)
         t = ((p[0] - curve.start[0]) * dx + (p[1] - curve.start[1]) * dy) / (dx * dx + dy * dy)
         return t if t >= 0 else None
     turn = math.atan2(p[1] - curve.center[1], p[0] - curve.center[0]) - curve.start_angle
@@ -314,7 +301,7 @@ def _round_by_newton(a: Piece, b: Piece, side: float, radius: float) -> tuple[fl
 
 def parallel(curve: Piece, t: float, left: float) -> Vec:
     """Returns the point at a distance to the left of that at a parameter."""
-    (x, y), (dx, dy) = point(curve, t), direction(curve, t)
+    (x, y), (dx, dy) = curve.point(t), direction(curve, t)
     return x - left * dy, y + left * dx
 
 

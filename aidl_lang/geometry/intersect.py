@@ -11,22 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from aidl_lang.common.running import checkpoint
-from aidl_lang.geometry.curves import (
-    Arc,
-    Bezier,
-    Circle,
-    Floats,
-    Ints,
-    Line,
-    Mask,
-    Piece,
-    Vec,
-    ends,
-    is_closed,
-    locate,
-    point,
-    round_range,
-)
+from aidl_lang.geometry.curves import Arc, Bezier, Circle, Floats, Ints, Line, Mask, Piece, Vec
 
 # --- Many curves as a table of numbers, for points on all of them at once.
 
@@ -40,7 +25,7 @@ class Table:
     def __init__(self, curves: Sequence[Piece]) -> None:
         self.curves = curves
         self.is_round = np.array([not isinstance(curve, Line | Bezier) for curve in curves], dtype=np.bool_)
-        self.is_closed = np.array([is_closed(curve) for curve in curves], dtype=np.bool_)
+        self.is_closed = np.array([curve.is_closed for curve in curves], dtype=np.bool_)
         self.rows = np.array([_row(curve) for curve in curves]).reshape(-1, 8)
         cubic = ~self.is_round
         self.rows[cubic] = (_POWERS @ self.rows[cubic].reshape(-1, 4, 2)).reshape(-1, 8)
@@ -91,10 +76,8 @@ def _row(curve: Piece) -> tuple[float, ...]:
         return x, y, x + (u - x) / 3, y + (v - y) / 3, u - (u - x) / 3, v - (v - y) / 3, u, v
     if isinstance(curve, Bezier):
         return *curve.p0, *curve.p1, *curve.p2, *curve.p3
-    if isinstance(curve, Arc | Circle):
-        return *curve.center, curve.radius, curve.radius, 1.0, 0.0, *round_range(curve)
-    turn = math.cos(curve.angle), math.sin(curve.angle)
-    return *curve.center, curve.rx, curve.ry, *turn, *round_range(curve)
+    center, rx, ry, angle, first, sweep = curve.frame
+    return *center, rx, ry, math.cos(angle), math.sin(angle), first, sweep
 
 
 # --- Where curves meet the endless lines or the whole circles that carry others: their distance from these
@@ -234,7 +217,7 @@ def all_intersections(table: Table, pairs: Ints, tolerance: float) -> list[list[
             found[k] = crossings if is_plain[k, 0] else [(t, s, p) for s, t, p in crossings]
     for part in _parts(np.flatnonzero(~is_plain.any(axis=1)), _SAMPLED_AT_ONCE):
         for row, t, s in _sampled(table, pairs[part], tolerance):
-            found[part[row]].append((t, s, point(curves[pairs[part[row], 0]], t)))
+            found[part[row]].append((t, s, curves[pairs[part[row], 0]].point(t)))
     return [_apart(crossings, tolerance) if len(crossings) > 1 else crossings for crossings in found]
 
 
@@ -246,17 +229,17 @@ def _parts(numbers: Ints, at_once: int) -> Iterator[Ints]:
 
 def _carried(a: Piece, b: Piece, at: Sequence[float], tolerance: float) -> list[Crossing]:
     """Returns the crossings among the places at which b meets what carries a."""
-    spots = [(s, point(b, s)) for s in at]
-    found = [(t, s, p) for s, p in spots if (t := locate(a, p, tolerance)) is not None]
-    may_lie = len(found) + sum(_on(a, p, tolerance) for p in ends(b)) > 1
+    spots = [(s, b.point(s)) for s in at]
+    found = [(t, s, p) for s, p in spots if (t := a.locate(p, tolerance)) is not None]
+    may_lie = len(found) + sum(_on(a, p, tolerance) for p in b.ends) > 1
     return [] if may_lie and _lie_on_each_other(a, b, tolerance) else found
 
 
 def meet(a: Piece, b: Piece, tolerance: float) -> bool:
     """Tells whether two curves have a point in common: a crossing, a touch, an end of one on the other."""
     return (
-        any(locate(a, p, tolerance) is not None for p in ends(b))
-        or any(locate(b, p, tolerance) is not None for p in ends(a))
+        any(a.locate(p, tolerance) is not None for p in b.ends)
+        or any(b.locate(p, tolerance) is not None for p in a.ends)
         or bool(intersections(a, b, tolerance))
     )
 
@@ -270,7 +253,7 @@ def _plain(a: Piece, b: Piece, tolerance: float) -> list[Crossing]:
     assert isinstance(a, Line | Arc | Circle)
     assert isinstance(b, Arc | Circle)
     spots = line_circle(a, b, tolerance) if isinstance(a, Line) else circle_circle(a, b, tolerance)
-    places = ((locate(a, p, tolerance), locate(b, p, tolerance), p) for p in spots)
+    places = ((a.locate(p, tolerance), b.locate(p, tolerance), p) for p in spots)
     return [(t, s, p) for t, s, p in places if t is not None and s is not None]
 
 
@@ -287,7 +270,7 @@ def _line_line(a: Line, b: Line, tolerance: float) -> list[Crossing]:
     if not (-slack_a <= t <= 1 + slack_a and -slack_b <= s <= 1 + slack_b):
         return []
     t, s = min(1.0, max(0.0, t)), min(1.0, max(0.0, s))
-    return [(t, s, point(a, t))]
+    return [(t, s, a.point(t))]
 
 
 def line_circle(line: Line, circle: Arc | Circle, tolerance: float) -> list[Vec]:
@@ -345,8 +328,8 @@ def _sampled(table: Table, pairs: Ints, tolerance: float) -> Iterator[tuple[int,
             # So close from one to the other that they are one there: the crossing belongs to the touch.
             a, b = (table.curves[number] for number in pairs[row].tolist())
             way = touch - crossing[0]
-            way = math.remainder(way, 1.0) if is_closed(a) else way
-            if _on(b, point(a, crossing[0] + way / 2), tolerance):
+            way = math.remainder(way, 1.0) if a.is_closed else way
+            if _on(b, a.point(crossing[0] + way / 2), tolerance):
                 crossing = [touch, other]
         yield row, crossing[0], crossing[1]
     k, t, s = _nearest_samples(away, step, ~lies)
@@ -365,24 +348,24 @@ def _apart(found: list[Crossing], tolerance: float) -> list[Crossing]:
 
 def _lie_on_each_other(a: Piece, b: Piece, tolerance: float) -> bool:
     """Tells whether the curves share a stretch: between two ends that lie on both, all else does."""
-    if is_closed(a):
+    if a.is_closed:
         a, b = b, a
     marks = [0.0, 1.0]
-    if not is_closed(a):
-        spots = list(ends(a)) if is_closed(b) else [*ends(a), *ends(b)]
+    if not a.is_closed:
+        spots = list(a.ends) if b.is_closed else [*a.ends, *b.ends]
         on_both = [
-            t for p in spots if (t := locate(a, p, tolerance)) is not None and _on(b, point(a, t), tolerance)
+            t for p in spots if (t := a.locate(p, tolerance)) is not None and _on(b, a.point(t), tolerance)
         ]
         marks = sorted(on_both)
     return any(
-        all(_on(b, point(a, t0 + (t1 - t0) * k / 8), tolerance) for k in range(1, 8))
+        all(_on(b, a.point(t0 + (t1 - t0) * k / 8), tolerance) for k in range(1, 8))
         for t0, t1 in pairwise(marks)
-        if math.dist(point(a, t0), point(a, t1)) > tolerance or t1 - t0 > 0.5
+        if math.dist(a.point(t0), a.point(t1)) > tolerance or t1 - t0 > 0.5
     )
 
 
 def _on(curve: Piece, p: Vec, tolerance: float) -> bool:
-    return locate(curve, p, tolerance) is not None
+    return curve.locate(p, tolerance) is not None
 
 
 def _may_lie(near: Mask, closed: Mask) -> Mask:

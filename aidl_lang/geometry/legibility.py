@@ -19,20 +19,7 @@ from aidl_lang.common.prose import counted, named, rough
 from aidl_lang.common.records import record
 from aidl_lang.common.source import Span
 from aidl_lang.geometry.boolean import Solid, stretches_beside
-from aidl_lang.geometry.curves import (
-    NO_LENGTH,
-    Bounds,
-    Line,
-    Piece,
-    Vec,
-    all_bounds,
-    are_near,
-    derivative,
-    part,
-    point,
-    points,
-    union_bounds,
-)
+from aidl_lang.geometry.curves import NO_LENGTH, Bounds, Line, Piece, Vec, all_bounds, are_near, union_bounds
 from aidl_lang.geometry.faces import Shape, first_node, last_node
 from aidl_lang.geometry.intersect import meet
 from aidl_lang.geometry.nearness import from_sides, inside
@@ -145,13 +132,13 @@ class Ground:
         boxes += [b for _, b in near]
         cut = stretches_beside(own, [p for p, _ in near], boxes, self.network.tolerance)
         parts = [(curve, stretch) for curve, of in zip(own, cut, strict=True) for stretch in of]
-        holders = self._holders([point(curve, stretch.middle) for curve, stretch in parts], bodies)
-        pieces = (part(c, s.t0, s.t1, s.start, s.end) for c, s in parts)
+        holders = self._holders([curve.point(stretch.middle) for curve, stretch in parts], bodies)
+        pieces = (c.part(s.t0, s.t1, s.start, s.end) for c, s in parts)
         return list(zip(pieces, holders, strict=True))
 
     @cached_property
     def _at_middles(self) -> list[list[int]]:
-        return self._holders([point(curve, 0.5) for curve in self.curves], range(len(self.bodies)))
+        return self._holders([curve.point(0.5) for curve in self.curves], range(len(self.bodies)))
 
     def _holders(self, spots: Sequence[Vec], bodies: Sequence[int]) -> list[list[int]]:
         """Returns for each spot those of some bodies that it lies in."""
@@ -255,7 +242,7 @@ def overhang(pieces: Sequence[Piece], region: Region, *, partly: bool = False) -
     """
     size = float(np.ptp(region.boxes.reshape(-1, 2), axis=0).max(initial=0.0))
     polygons = [loop_points(face.outer, 1e-5 * size) for face in region.faces]
-    spots = np.concatenate([points(piece, _TIMES) for piece in pieces])
+    spots = np.concatenate([piece.points(_TIMES) for piece in pieces])
     out = ~inside(polygons, spots)
     if partly and out.all():
         return 0.0
@@ -452,7 +439,7 @@ def _crossings(network: Network, ring: list[_Pass]) -> Iterator[Crossing]:
 
 def _do_cross(network: Network, one: _Pass, other: _Pass) -> bool:
     """Tells whether two ways through a node change sides; what touches, or runs along, does not."""
-    ways = (derivative(network.piece(use), 0) for use in (one.back, one.on, other.back, other.on))
+    ways = (network.piece(use).derivative(0) for use in (one.back, one.on, other.back, other.on))
     base, *rest = (math.atan2(dy, dx) for dx, dy in ways)
     on, *others = ((angle - base) % math.tau for angle in rest)
     if any(min(abs(a - b), math.tau - abs(a - b)) < _FLAT for a in others for b in (0.0, on)):

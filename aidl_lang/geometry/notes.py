@@ -26,7 +26,7 @@ from aidl_lang.geometry.bodies import (
     ends_of,
 )
 from aidl_lang.geometry.boolean import Contacts
-from aidl_lang.geometry.curves import LARGEST, NO_LENGTH, Bezier, Vec, bounds, ends, is_finite, larger_side
+from aidl_lang.geometry.curves import LARGEST, NO_LENGTH, Bezier, Vec, larger_side
 from aidl_lang.geometry.faces import is_winding
 from aidl_lang.geometry.network import Network
 from aidl_lang.geometry.solved import SolvedGeometry, SolvedStructure
@@ -169,7 +169,7 @@ def _primitive_paths(geometry: SolvedGeometry) -> list[str]:
     is_seen = (
         geometry.curve is not None
         and not geometry.construction
-        and not larger_side(bounds(geometry.curve)) < NO_LENGTH
+        and not larger_side(geometry.curve.box) < NO_LENGTH
     )
     own = [geometry.path] if is_seen else []
     return own + [path for part in geometry.parts for path in _primitive_paths(part)]
@@ -405,11 +405,11 @@ def stroked_note(structure: SolvedStructure, text: SolvedGeometry) -> Diagnostic
 def unusable_note(structure: SolvedStructure, leaf: SolvedGeometry, whole: SolvedGeometry) -> Diagnostic:
     """Returns the diagnostic on a curve without extent or place; `whole` is the geometry not drawn."""
     name, curve = local(structure, whole), leaf.curve
-    if curve is not None and not is_finite(curve):
+    if curve is not None and not curve.is_finite():
         what = "has no place"
         label = "its coordinates divide by zero or leave the range of numbers"
         hint = "look for a division by an unknown that starts at 0, and give it another first guess"
-    elif curve is not None and not max(map(abs, bounds(curve))) <= LARGEST:
+    elif curve is not None and not max(map(abs, curve.box)) <= LARGEST:
         what, label = "is too large", f"this {whole.type} reaches further than {LARGEST:g} mm"
         hint = "look for a size or position that was written in another unit, or multiplied once too often"
     else:
@@ -472,7 +472,7 @@ def _open(
     meeting = network.meeting(finding.numbers)
     outlines: dict[str, list[Vec]] = defaultdict(list)
     for leaf, number in curves:
-        loose = [p for p in ends(network.curves[number]) if meeting[network.node(p)] <= 1]
+        loose = [p for p in network.curves[number].ends if meeting[network.node(p)] <= 1]
         outlines[leaf.path.rpartition(".")[0]] += loose
     name, loose = min(outlines.items(), key=lambda item: _apart(_nearest(item[1])))
     gap = _nearest(loose)

@@ -12,18 +12,7 @@ from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.records import record
 from aidl_lang.geometry import outline_notes as notes
 from aidl_lang.geometry.boolean import clipped_each, common, united, without
-from aidl_lang.geometry.curves import (
-    LARGEST,
-    Line,
-    Piece,
-    Vec,
-    bounds,
-    ends,
-    is_finite,
-    larger_side,
-    reverse,
-    union_bounds,
-)
+from aidl_lang.geometry.curves import LARGEST, Line, Piece, Vec, larger_side, union_bounds
 from aidl_lang.geometry.drawing import Drawing
 from aidl_lang.geometry.faces import region_of
 from aidl_lang.geometry.finishing import Arm, Corner, Result, Work, arms_at, corners_of, finish, largest
@@ -66,7 +55,7 @@ def complete(model: SolvedModel) -> tuple[SolvedModel, list[Diagnostic]]:
 def _leaves(g: SolvedGeometry) -> Iterator[tuple[SolvedGeometry, Piece]]:
     """Yields the primitives of a geometry that is drawn, with their curves, if they have a place."""
     for leaf in g.leaves():
-        if (curve := leaf.curve) and is_finite(curve, LARGEST):
+        if (curve := leaf.curve) and curve.is_finite(LARGEST):
             yield leaf, curve
 
 
@@ -176,7 +165,7 @@ class _Outliner:
                     p for group in groups for one in group if isinstance(p := one.values.get("at"), tuple)
                 ]
                 dots = [Line(p, p) for p in points]  # type: ignore[arg-type]
-                region = hull([*curves[0], *(d for d in dots if max(map(abs, bounds(d))) <= LARGEST)])
+                region = hull([*curves[0], *(d for d in dots if max(map(abs, d.box)) <= LARGEST)])
             case "thick":
                 width, words = recipe.numbers["width"], recipe.words
                 sharp = words["joins"] == "sharp"
@@ -342,10 +331,10 @@ class _Outliner:
                     for corner in _corners(f, theirs, near / share):
                         arms = ((numbers[a.number], a.first) for a in corner.arms)
                         one, other = (
-                            Arm(curves[k] if first else reverse(curves[k]), k, first) for k, first in arms
+                            Arm(curves[k] if first else curves[k].reversed(), k, first) for k, first in arms
                         )
                         made = replace(f, sizes=tuple(share * s for s in f.sizes))
-                        yield made, Corner(ends(one.curve)[0], (one, other))
+                        yield made, Corner(one.curve.ends[0], (one, other))
             sources = [(self._source(g) if g else None, c) for g, c in sources]
 
     def _source(self, g: SolvedGeometry) -> SolvedGeometry | None:
@@ -432,7 +421,7 @@ def _region(geometry: Sequence[SolvedGeometry]) -> Region:
 
 
 def _extent(curves: Sequence[Piece]) -> float:
-    return larger_side(union_bounds([bounds(c) for c in curves])) or 1.0
+    return larger_side(union_bounds([c.box for c in curves])) or 1.0
 
 
 def _deepest(region: Region, too_deep: float) -> float:

@@ -20,7 +20,6 @@ from aidl_lang.geometry.curves import (
     Floats,
     Piece,
     are_near,
-    bounds,
     inward,
     larger_side,
     union_bounds,
@@ -75,7 +74,7 @@ def _cut_off(stroke: Stroke, region: Region) -> tuple[Stroke | None, Stroke | No
 
 def _by_cover(stroke: Stroke, bodies: Sequence[Body]) -> list[Body]:
     """Returns the bodies under a stroke, first the one that has most of it."""
-    box = union_bounds([bounds(piece) for piece in stroke.pieces])
+    box = union_bounds([piece.box for piece in stroke.pieces])
     near = [body for body in reversed(bodies) if are_near(box, body.box)]
     if len(near) < 2:
         return near
@@ -161,7 +160,7 @@ class Part:
             strokes,
             tuple(replace(seam, pieces=by.pieces(seam.pieces)) for seam in self.seams),
             {path: below.mapped(by.piece) for path, below in self.regions.items()},
-            union_bounds([box, *(bounds(piece) for s in strokes for piece in s.pieces)]),
+            union_bounds([box, *(piece.box for s in strokes for piece in s.pieces)]),
         )
 
 
@@ -196,7 +195,7 @@ def _parts(drawing: Drawing, on: dict[str, list[Stroke]]) -> Iterator[Part]:
         seams[seam.body].append(seam)
     for body in drawing.bodies:
         strokes = tuple(on.get(body.path, ()))
-        box = union_bounds([body.box, *(bounds(piece) for s in strokes for piece in s.pieces)])
+        box = union_bounds([body.box, *(piece.box for s in strokes for piece in s.pieces)])
         regions = below[body.path]
         regions |= {p: r for p, r in shared.items() if are_near(region_bounds(r), body.box)}
         yield Part(body, strokes, tuple(seams[body.path]), regions, box)
@@ -249,7 +248,7 @@ def _engraving(part: Part) -> Hashable:
 def _places(pieces: Iterable[Piece], around: Bounds) -> tuple[tuple[int, ...], ...]:
     """Returns the boxes of pieces in one, in steps of it so small that equal ones are the same."""
     step, origin = _ALIKE * larger_side(around), around[:2] * 2
-    boxes = (zip(bounds(p), origin, strict=True) for p in pieces)
+    boxes = (zip(p.box, origin, strict=True) for p in pieces)
     return tuple(sorted(tuple(round((v - o) / step + _OFF_BEAT) for v, o in box) for box in boxes))
 
 

@@ -24,7 +24,7 @@ from aidl_lang.common.running import Later, Stopwatch, checkpoint, working
 from aidl_lang.common.source import Span
 from aidl_lang.geometry import curves
 from aidl_lang.geometry.boolean import stencilled, united_character
-from aidl_lang.geometry.curves import LARGEST, Bounds, Curve, Vec, is_finite
+from aidl_lang.geometry.curves import LARGEST, Bounds, Curve, Vec
 from aidl_lang.geometry.drawing import Drawing, Findings, draw
 from aidl_lang.geometry.faces import edge_of, parts_of
 from aidl_lang.geometry.notes import unusable_note
@@ -472,7 +472,7 @@ def _is_sound(structure: SolvedStructure) -> bool:
 
 def _has_place(geometry: SolvedGeometry) -> bool:
     return (
-        (is_finite(geometry.curve, LARGEST) if geometry.curve else _is_within(geometry.values.values()))
+        (geometry.curve.is_finite(LARGEST) if geometry.curve else _is_within(geometry.values.values()))
         and all(map(_has_place, geometry.parts))
         and (geometry.recipe is None or _is_possible(geometry))
     )
@@ -502,7 +502,7 @@ def _cleaned(s: SolvedStructure, notes: list[Diagnostic]) -> SolvedStructure:
     if not _is_within((frame.x, frame.y, frame.rotation)):
         frame = Frame(0.0, 0.0, 0.0, frame.mirrored)
     if box is None or not s.is_empty:
-        box = Box.around((c for g in geometry for c in g.curves() if is_finite(c)), children)
+        box = Box.around((c for g in geometry for c in g.curves() if c.is_finite()), children)
     elif not _is_within(box.bounds):
         box = None
     return replace(s, geometry=geometry, structures=children, frame=frame, box=box)

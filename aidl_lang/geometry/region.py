@@ -25,12 +25,6 @@ from aidl_lang.geometry.curves import (
     Piece,
     Vec,
     all_bounds,
-    bounds,
-    derivative,
-    ends,
-    point,
-    points,
-    round_range,
     union_bounds,
 )
 
@@ -97,7 +91,7 @@ class Region:
     @cached_property
     def boxes(self) -> Floats:
         """The box of each piece, a row each."""
-        return np.array([bounds(piece) for piece in self.pieces]).reshape(-1, 4)
+        return np.array([piece.box for piece in self.pieces]).reshape(-1, 4)
 
     def mapped(self, moved: Callable[[Piece], Piece]) -> Region:
         return Region(tuple(face.mapped(moved) for face in self.faces))
@@ -153,7 +147,7 @@ def perimeter(region: Region) -> float:
 
 def loop_area(loop: Loop) -> float:
     """Returns the area of a loop, positive counter-clockwise."""
-    start = ends(loop.pieces[0])[0]
+    start = loop.pieces[0].ends[0]
     pieces = loop.pieces
     area = sum(_bezier_area(p, start) if isinstance(p, Bezier) else _moments(p, start)[0] for p in pieces)
     return -area if loop.reversed else area
@@ -161,7 +155,7 @@ def loop_area(loop: Loop) -> float:
 
 def moments_about_start(loop: Loop) -> tuple[Vec, Moments]:
     """Returns the start of a loop and its moments about it: far from the origin nothing cancels there."""
-    start = ends(loop.pieces[0])[0]
+    start = loop.pieces[0].ends[0]
     a = mx = my = 0.0
     for da, dx, dy in (_moments(piece, start) for piece in loop.pieces):
         a, mx, my = a + da, mx + dx, my + dy
@@ -173,13 +167,13 @@ def _moments(piece: Piece, origin: Vec) -> Moments:
     """Returns the moments of the triangle fan from the origin to the piece."""
     if isinstance(piece, Bezier):
         return _bezier_moments(piece, origin)
-    start, end = ends(piece)
+    start, end = piece.ends
     p, q = (start[0] - origin[0], start[1] - origin[1]), (end[0] - origin[0], end[1] - origin[1])
     half = (p[0] * q[1] - p[1] * q[0]) / 2
     chord = half, half * (p[0] + q[0]) / 3, half * (p[1] + q[1]) / 3
     if isinstance(piece, Line):
         return chord
-    first, sweep = round_range(piece)
+    first, sweep = piece.range
     a = _less_sine(sweep) / 2
     moment = 2 / 3 * math.sin(sweep / 2) ** 3
     bisector = first + sweep / 2
@@ -210,9 +204,9 @@ def _bezier_moments(piece: Bezier, origin: Vec) -> Moments:
     """Integrals of (p x p')/2 and p (p x p')/3, polynomials of degree 5 and 8."""
     a = mx = my = 0.0
     for t, weight in gauss(5):
-        x, y = point(piece, t)
+        x, y = piece.point(t)
         x, y = x - origin[0], y - origin[1]
-        dx, dy = derivative(piece, t)
+        dx, dy = piece.derivative(t)
         cross = weight * (x * dy - y * dx)
         a, mx, my = a + cross / 2, mx + cross * x / 3, my + cross * y / 3
     return a, mx, my
@@ -232,13 +226,13 @@ def length(piece: Piece) -> float:
     if isinstance(piece, Line):
         return math.dist(piece.start, piece.end)
     if isinstance(piece, Arc | Circle):
-        return piece.radius * abs(round_range(piece)[1])
+        return piece.radius * abs(piece.range[1])
     nodes, shares, slopes = _quadrature()
     if isinstance(piece, Bezier):
         control = np.array((piece.p0, piece.p1, piece.p2, piece.p3))
         speed = np.hypot(*(slopes @ (3 * np.diff(control, axis=0))).T)
     else:
-        first, sweep = round_range(piece)
+        first, sweep = piece.range
         u = first + sweep * nodes
         speed = abs(sweep) * np.hypot(piece.rx * np.sin(u), piece.ry * np.cos(u))
     return float(speed @ shares)
@@ -305,7 +299,7 @@ def loop_points(loop: Loop, tolerance: float) -> Polygon:
 
 def piece_points(piece: Piece, tolerance: float) -> Polygon:
     """Returns a polyline along a piece, both ends included."""
-    return np.concatenate((_from_start(piece, tolerance), [ends(piece)[1]]))
+    return np.concatenate((_from_start(piece, tolerance), [piece.ends[1]]))
 
 
 def polygon_area(polygon: Polygon) -> float:
@@ -316,8 +310,8 @@ def polygon_area(polygon: Polygon) -> float:
 
 def _from_start(piece: Piece, tolerance: float) -> Polygon:
     count = _chords(piece, tolerance)
-    found = points(piece, np.arange(count) / count)
-    found[0] = ends(piece)[0]
+    found = piece.points(np.arange(count) / count)
+    found[0] = piece.ends[0]
     return found
 
 
@@ -331,6 +325,6 @@ def _chords(piece: Piece, tolerance: float) -> int:
         sides = [(q[0] - p[0], q[1] - p[1]) for p, q in pairwise(corners)]
         bend = 6 * max(math.dist(a, b) for a, b in pairwise(sides))
         return max(3, math.ceil(math.sqrt(bend / (8 * tolerance)) - SLACK))
-    radius = piece.radius if isinstance(piece, Arc | Circle) else max(piece.rx, piece.ry)
-    step = min(COARSEST, 4 * math.asin(math.sqrt(min(1.0, tolerance / (2 * radius)))))
-    return max(2, math.ceil(abs(round_range(piece)[1]) / step - SLACK))
+    _, rx, ry, *_, sweep = piece.frame
+    step = min(COARSEST, 4 * math.asin(math.sqrt(min(1.0, tolerance / (2 * max(rx, ry))))))
+    return max(2, math.ceil(abs(sweep) / step - SLACK))

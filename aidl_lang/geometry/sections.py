@@ -14,26 +14,7 @@ import numpy as np
 
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
-from aidl_lang.geometry.curves import (
-    TAU,
-    Arc,
-    Circle,
-    Floats,
-    Ints,
-    Line,
-    Mask,
-    Piece,
-    Vec,
-    bounds,
-    ends,
-    is_closed,
-    locate,
-    nearest,
-    part,
-    point,
-    points,
-    union_bounds,
-)
+from aidl_lang.geometry.curves import TAU, Arc, Circle, Floats, Ints, Line, Mask, Piece, Vec, union_bounds
 from aidl_lang.geometry.nearness import inside
 from aidl_lang.geometry.network import NODE, RELATIVE_TOLERANCE, UNKNOWN, Edge, Network
 from aidl_lang.geometry.region import Face, Loop, Polygon, Region, length, loop_area, polygon_area
@@ -273,21 +254,21 @@ def _holders(outers: list[Loop], holes: list[Loop]) -> list[int]:
     if len(outers) == 1 or not holes:
         return [0] * len(holes)
     holder = np.full(len(holes), -1)
-    spots = np.array([point(hole.pieces[0], 0.5) for hole in holes]).reshape(-1, 2)
+    spots = np.array([hole.pieces[0].point(0.5) for hole in holes]).reshape(-1, 2)
     ts = np.linspace(0, 1, 65)
     for number, outer in enumerate(outers):
-        left, bottom, right, top = union_bounds([bounds(piece) for piece in outer.pieces])
+        left, bottom, right, top = union_bounds([piece.box for piece in outer.pieces])
         within = (spots >= (left, bottom)).all(axis=1) & (spots <= (right, top)).all(axis=1)
         seekers = np.flatnonzero(within & (holder < 0))
         if len(seekers):
-            polygon = np.concatenate([points(piece, ts)[:-1] for piece in outer.pieces])
+            polygon = np.concatenate([piece.points(ts)[:-1] for piece in outer.pieces])
             holder[seekers[inside([polygon], spots[seekers])]] = number
     return [int(k) for k in holder]
 
 
 def first_point(loop: Loop) -> Vec:
     """Returns where a loop begins, by which loops and faces are in order."""
-    return ends(loop.pieces[0])[0]
+    return loop.pieces[0].ends[0]
 
 
 def _sides(network: Network, polygons: list[Floats]) -> Sides:
@@ -333,10 +314,10 @@ def _touched_node(network: Network, a: int, b: int, p: Vec) -> int | None:
         return None
     node = min(shared, key=lambda n: math.dist(network.nodes[n], p))
     curve, across, reach = network.curves[one.curve], network.curves[other.curve], 4 * network.tolerance
-    t, there = nearest(curve, p), one.t0 if node == one.start else one.t1
-    spots = (point(curve, t + (there - t) * k / 4) for k in range(4))
-    is_one = all(locate(across, spot, reach) is not None for spot in spots)
-    return node if is_one and math.dist(point(curve, t), p) <= reach else None
+    t, there = curve.nearest(p), one.t0 if node == one.start else one.t1
+    spots = (curve.point(t + (there - t) * k / 4) for k in range(4))
+    is_one = all(across.locate(spot, reach) is not None for spot in spots)
+    return node if is_one and math.dist(curve.point(t), p) <= reach else None
 
 
 def _loops(network: Network, sides: Sides, number: int, used: set[int]) -> list[tuple[float, Loop]]:
@@ -410,9 +391,9 @@ def _parameter(network: Network, sides: Sides, edge: Edge, vertex: int, beside: 
         if edge.start != edge.end:
             return edge.t0 if node == edge.start else edge.t1
         # Both ends of the part are here: the one that the vertex beside it is near to.
-        t = nearest(network.curves[edge.curve], _spot(network, sides, beside)[1])
+        t = network.curves[edge.curve].nearest(_spot(network, sides, beside)[1])
         return edge.t0 if t < (edge.t0 + edge.t1) / 2 else edge.t1
-    return min(edge.t1, max(edge.t0, nearest(network.curves[edge.curve], p)))
+    return min(edge.t1, max(edge.t0, network.curves[edge.curve].nearest(p)))
 
 
 def _snapped(runs: list[Run], tolerance: float) -> list[Run]:
@@ -432,16 +413,16 @@ def _continue(network: Network, a: Run, b: Run) -> Run | None:
         return None
     if a.t1 == b.t0:
         return Run(a.curve, a.t0, b.t1, a.start, b.end)
-    if is_closed(network.curves[a.curve]) and abs(math.remainder(a.t1 - b.t0, 1.0)) <= 1e-12:  # rounding
+    if network.curves[a.curve].is_closed and abs(math.remainder(a.t1 - b.t0, 1.0)) <= 1e-12:  # rounding
         return Run(a.curve, a.t0, a.t1 + (b.t1 - b.t0), a.start, b.end)
     return None
 
 
 def _to_loop(network: Network, runs: list[Run]) -> Loop:
-    if len(runs) == 1 and runs[0].curve is not None and is_closed(curve := network.curves[runs[0].curve]):
+    if len(runs) == 1 and runs[0].curve is not None and (curve := network.curves[runs[0].curve]).is_closed:
         return Loop((curve,), reversed=runs[0].t1 < runs[0].t0)
     pieces = [
-        Line(r.start, r.end) if r.curve is None else part(network.curves[r.curve], r.t0, r.t1, r.start, r.end)
+        Line(r.start, r.end) if r.curve is None else network.curves[r.curve].part(r.t0, r.t1, r.start, r.end)
         for r in runs
     ]
     return closed_loop(pieces, network.tolerance)
@@ -455,7 +436,7 @@ def closed_loop(pieces: Sequence[Piece], tolerance: float) -> Loop:
 
     # The leftmost point begins, the lowest of those: compared coarsely, so that rounding does not choose.
     def begins(number: int) -> tuple[int, ...]:
-        return tuple(round(c / (2 * tolerance)) for c in ends(pieces[number])[0])
+        return tuple(round(c / (2 * tolerance)) for c in pieces[number].ends[0])
 
     first = min(range(len(pieces)), key=begins)
     return Loop((*pieces[first:], *pieces[:first]))

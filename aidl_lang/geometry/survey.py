@@ -15,18 +15,7 @@ from aidl_lang.common.prose import did_you_mean, first_few, ticked
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
 from aidl_lang.geometry.boolean import Contact, region_distance
-from aidl_lang.geometry.curves import (
-    Bezier,
-    Bounds,
-    Circle,
-    Ellipse,
-    Line,
-    Piece,
-    Vec,
-    derivative,
-    point,
-    round_range,
-)
+from aidl_lang.geometry.curves import Bezier, Bounds, Circle, Ellipse, Line, Piece, Vec
 from aidl_lang.geometry.drawing import Body, Drawing, region_alone
 from aidl_lang.geometry.region import Region, measure, moments_about_start
 from aidl_lang.geometry.solved import SolvedModel
@@ -133,14 +122,14 @@ def _curved(piece: Piece, origin: Vec) -> Squares:
     """Integrals of (p × p') times a quarter of x², y² and xy."""
     spans = 1
     if not isinstance(piece, Line | Bezier):
-        spans = max(1, math.ceil(abs(round_range(piece)[1]) / (math.pi / 2) - 1e-9))
+        spans = max(1, math.ceil(abs(piece.range[1]) / (math.pi / 2) - 1e-9))
     xx = yy = xy = 0.0
     for k in range(spans):
         for node, weight in gauss(12):
             t = (k + node) / spans
-            x, y = point(piece, t)
+            x, y = piece.point(t)
             x, y = x - origin[0], y - origin[1]
-            dx, dy = derivative(piece, t)
+            dx, dy = piece.derivative(t)
             cross = weight / spans * (x * dy - y * dx) / 4
             xx, yy, xy = xx + cross * x * x, yy + cross * y * y, xy + cross * x * y
     return xx, yy, xy

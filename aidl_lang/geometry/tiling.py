@@ -27,7 +27,6 @@ from aidl_lang.geometry.curves import (
     Line,
     Piece,
     Vec,
-    bounds,
     image,
     larger_side,
     turn_between,
@@ -216,7 +215,7 @@ def _anchor(region: Region, step: Vec, sense: float, *, is_middle: bool) -> Vec:
 
     across = math.atan2(y, x)
     images = (image(c, level, turned=lambda a: sense * (a - across), sense=sense) for c in region.pieces)
-    left, bottom, right, top = union_bounds([bounds(c) for c in images])
+    left, bottom, right, top = union_bounds([c.box for c in images])
     u, v = ((left + right) / 2, (bottom + top) / 2) if is_middle else (left, bottom)
     return u * x - sense * v * y, u * y + sense * v * x
 
@@ -234,7 +233,7 @@ def _told_apart(cell: Sequence[Piece], lattice: Lattice, box: Bounds) -> tuple[l
 def _sorted(cell: Sequence[Piece], region: Region, lattice: Lattice) -> tuple[list[Vec], list[Vec]]:
     """Returns the ways of the copies that lie wholly inside, and of those that the border may cut."""
     ways = lattice.ways(*_reach(cell, region_bounds(region)))
-    left, bottom, right, top = union_bounds([bounds(c) for c in cell])
+    left, bottom, right, top = union_bounds([c.box for c in cell])
     radius = math.hypot(right - left, top - bottom) / 2
     spots = np.array(ways).reshape(-1, 2) + np.array(((left + right) / 2, (bottom + top) / 2))
     size = float(np.ptp(region.boxes.reshape(-1, 2), axis=0).max())
@@ -250,7 +249,7 @@ def _sorted(cell: Sequence[Piece], region: Region, lattice: Lattice) -> tuple[li
 
 def _reach(cell: Sequence[Piece], box: Bounds) -> tuple[Floats, Floats]:
     """Returns the least and the greatest way of copies of a cell that meet a box."""
-    own = union_bounds([bounds(c) for c in cell])
+    own = union_bounds([c.box for c in cell])
     return np.array((box[0] - own[2], box[1] - own[3])), np.array((box[2] - own[0], box[3] - own[1]))
 
 

@@ -11,7 +11,7 @@ from typing import TypeAlias
 from aidl_lang import Span
 from aidl_lang.common.prose import first_few
 from aidl_lang.geometry.boolean import united, without
-from aidl_lang.geometry.curves import Bounds, bounds, union_bounds
+from aidl_lang.geometry.curves import Bounds, union_bounds
 from aidl_lang.geometry.drawing import Drawing, draw
 from aidl_lang.geometry.offsets import hull
 from aidl_lang.geometry.outlines import complete
@@ -110,7 +110,7 @@ def _alone(group: Group) -> SolvedModel:
 
 def _boxes(part: Part) -> Iterator[Bounds]:
     if isinstance(part, SolvedGeometry):
-        yield from map(bounds, part.curves())
+        yield from (curve.box for curve in part.curves())
     elif (box := part.box) is not None:
         yield box.left, box.bottom, box.right, box.top
 

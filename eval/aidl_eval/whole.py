@@ -10,7 +10,7 @@ import numpy as np
 
 from aidl_eval.regions import Regions
 from aidl_lang.geometry.boolean import common, overlap_area, region_distance
-from aidl_lang.geometry.curves import Line, inward, points
+from aidl_lang.geometry.curves import Line, inward
 from aidl_lang.geometry.nearness import near_pairs
 from aidl_lang.geometry.region import (
     Face,
@@ -93,7 +93,7 @@ def teeth(whole: Region) -> float:
     outer = max(whole.faces, key=lambda face: area(Region((Face(face.outer),)))).outer
     center = measure(Region((Face(outer),))).centroid
     steps = np.linspace(0.0, 1.0, _SAMPLES)
-    away = np.concatenate([np.hypot(*(points(p, steps) - center).T) for p in outer.pieces])
+    away = np.concatenate([np.hypot(*(p.points(steps) - center).T) for p in outer.pieces])
     beyond = away > (away.min() + away.max()) / 2
     return float(np.count_nonzero(beyond & ~np.roll(beyond, 1)))
 

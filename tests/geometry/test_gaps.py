@@ -10,7 +10,7 @@ from aidl_lang import pipeline
 from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.source import SourceFile
 from aidl_lang.common.world import MemoryWorld
-from aidl_lang.geometry.curves import Arc, Bezier, Circle, Line, ends
+from aidl_lang.geometry.curves import Arc, Bezier, Circle, Line
 from aidl_lang.geometry.region import Region, area
 from aidl_lang.pipeline import Compiled
 
@@ -43,7 +43,7 @@ def region(result: Compiled, path: str) -> Region:
 def assert_closed(found: Region) -> None:
     for loop in found.loops:
         for one, after in zip(loop.pieces, loop.pieces[1:] + loop.pieces[:1], strict=True):
-            assert loop.is_whole or ends(one)[1] == ends(after)[0]
+            assert loop.is_whole or one.ends[1] == after.ends[0]
 
 
 @pytest.mark.parametrize(

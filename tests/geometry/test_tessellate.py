@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import shapely
 
-from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, Line, Piece, ends, part, point, points
+from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, Line, Piece
 from aidl_lang.geometry.region import (
     Face,
     Loop,
@@ -28,7 +28,7 @@ PIECES: list[Piece] = [
     arc((5, 5), 40, 75, -280),
     Circle((3, -2), 25),
     Ellipse((3, -2), 30, 0.5, 0.7),
-    part(WHOLE, 0.9, 0.2, point(WHOLE, 0.9), point(WHOLE, 0.2)),
+    WHOLE.part(0.9, 0.2, WHOLE.point(0.9), WHOLE.point(0.2)),
     Bezier((0, 0), (50, 0), (-20, 40), (30, 40)),
     Bezier((0, 0), (10, 10), (20, 20), (30, 30)),
     Bezier((0, 0), (90, 60), (-60, 60), (30, 0)),
@@ -39,9 +39,9 @@ PIECES: list[Piece] = [
 @pytest.mark.parametrize("tolerance", [1e-4, 0.003, 0.1, 1.7, 30])
 def test_no_chord_departs_by_more_than_the_tolerance(piece: Piece, tolerance: float):
     line = piece_points(piece, tolerance)
-    assert tuple(line[0]) == ends(piece)[0]
-    assert tuple(line[-1]) == ends(piece)[1]
-    spots = points(piece, np.linspace(0, 1, 3001))
+    assert tuple(line[0]) == piece.ends[0]
+    assert tuple(line[-1]) == piece.ends[1]
+    spots = piece.points(np.linspace(0, 1, 3001))
     away = shapely.distance(shapely.LineString(line), shapely.points(spots)).max()
     assert away <= tolerance * (1 + 1e-8) + 1e-12
     # The vertices lie on the curve: between samples it strays from their chords by next to nothing.

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from aidl_lang import pipeline
 from aidl_lang.common.source import SourceFile
 from aidl_lang.common.world import MemoryWorld
-from aidl_lang.geometry.curves import Piece, points
+from aidl_lang.geometry.curves import Piece
 from aidl_lang.geometry.drawing import Drawing
 from aidl_lang.geometry.region import Loop, Region, area
 from tests.amount import tries
@@ -50,7 +50,7 @@ def drawing_of(text: str) -> Drawing:
 
 
 def flat(piece: Piece) -> np.ndarray:
-    return points(piece, np.linspace(0, 1, CHORDS))
+    return piece.points(np.linspace(0, 1, CHORDS))
 
 
 def polygon(loop: Loop) -> shapely.Geometry:

@@ -18,7 +18,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from aidl_lang.geometry.boolean import common, overlap_area, united, without
-from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, EllipseArc, Line, Piece, Vec, ends, points
+from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, EllipseArc, Line, Piece, Vec
 from aidl_lang.geometry.drawing import draw
 from aidl_lang.geometry.region import Face, Loop, Region, area, length, loop_area, perimeter, region_bounds
 from aidl_lang.geometry.solved import SolvedStructure
@@ -116,7 +116,7 @@ def region_of(shapes: Sequence[Shape]) -> Region:
 
 def tessellated(shape: Shape) -> NDArray[np.float64]:
     ts = np.linspace(0, 1, CHORDS + 1)
-    return np.concatenate([points(p, ts[[0, -1]] if isinstance(p, Line) else ts)[:-1] for p in shape])
+    return np.concatenate([p.points(ts[[0, -1]] if isinstance(p, Line) else ts)[:-1] for p in shape])
 
 
 def error(shapes: Sequence[Shape]) -> float:
@@ -196,11 +196,11 @@ def assert_exact(region: Region, shapes: Sequence[Shape]) -> None:
     for loop in region.loops:
         assert loop.is_whole or len(loop.pieces) > 1
         for one, after in zip(loop.pieces, loop.pieces[1:] + loop.pieces[:1], strict=True):
-            assert loop.is_whole or ends(one)[1] == ends(after)[0]
+            assert loop.is_whole or one.ends[1] == after.ends[0]
             assert length(one) > 1e-6 * size
             same = [c for c in inputs if _is_part_of(one, c)]
             assert same, f"nothing of the kind of {one} was drawn"
-            away = min(float(off_carrier(points(one, ts), curve).max()) for curve in same)
+            away = min(float(off_carrier(one.points(ts), curve).max()) for curve in same)
             assert away <= EXACT * size, f"{one} is {away} off"
     for face in region.faces:
         assert loop_area(face.outer) > 0

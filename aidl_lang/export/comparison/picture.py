@@ -25,7 +25,7 @@ from aidl_lang.export.marks import (
     polygon,
     widened,
 )
-from aidl_lang.geometry.curves import Bounds, Line, Piece, Vec, larger_side, point, union_bounds
+from aidl_lang.geometry.curves import Bounds, Line, Piece, Vec, larger_side, union_bounds
 from aidl_lang.geometry.drawing import Stroke
 from aidl_lang.geometry.network import Network, with_finer_chords
 from aidl_lang.geometry.region import Face, Region, area, face_polygons, measure
@@ -136,7 +136,7 @@ def _shared_strokes(comparison: Comparison) -> set[Stroke]:
 
 def _coincide(a: Sequence[Piece], b: Sequence[Piece], tolerance: float) -> bool:
     return len(a) == len(b) and all(
-        math.dist(point(p, t), point(q, t)) <= tolerance
+        math.dist(p.point(t), q.point(t)) <= tolerance
         for p, q in zip(a, b, strict=True)
         for t in (0.0, 0.25, 0.5, 0.75, 1.0)
     )

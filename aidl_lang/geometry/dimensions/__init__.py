@@ -17,18 +17,7 @@ from aidl_lang.building.model import Model, Structure
 from aidl_lang.building.state import ParamBinding, Scope
 from aidl_lang.building.values import Num
 from aidl_lang.common.records import record
-from aidl_lang.geometry.curves import (
-    LARGEST,
-    NO_LENGTH,
-    Arc,
-    Circle,
-    Line,
-    Piece,
-    Vec,
-    bounds,
-    nearest,
-    point,
-)
+from aidl_lang.geometry.curves import LARGEST, NO_LENGTH, Arc, Circle, Line, Piece, Vec
 from aidl_lang.geometry.dimensions import sketch as sk
 from aidl_lang.geometry.dimensions.constraints import Scene, by_hand, stated_lengths
 from aidl_lang.geometry.dimensions.features import (
@@ -268,7 +257,7 @@ class _Part:
 
     def _filed(self) -> Iterator[Reading]:
         """Yields the levels of the ends of the part that an outline without dimensions reaches."""
-        boxes = [bounds(piece) for piece in self.loose]
+        boxes = [piece.box for piece in self.loose]
         for side, end in enumerate(self.body.box):
             number = self.sketch.level(side % 2, end)
             if number is not None and any(abs(box[side] - end) <= self.slack for box in boxes):
@@ -358,7 +347,7 @@ class _Part:
 
     def _is_on(self, pieces: Iterable[Piece], points: Sequence[Vec]) -> bool:
         return any(
-            math.dist(point(piece, nearest(piece, p)), p) <= self.slack for piece in pieces for p in points
+            math.dist(piece.point(piece.nearest(p)), p) <= self.slack for piece in pieces for p in points
         )
 
     def _is_on_loose(self, of: Dimension) -> bool:
@@ -426,7 +415,7 @@ class _Part:
     def _ends_at(self, axis: int, value: float) -> list[Vec]:
         found = []
         for piece in self.body.region.pieces:
-            box = bounds(piece)
+            box = piece.box
             for side in (axis, axis + 2):
                 if abs(box[side] - value) <= self.slack:
                     middle = (box[1 - axis] + box[3 - axis]) / 2
@@ -461,15 +450,15 @@ def mirror_levels(body: Body, slack: float) -> tuple[float | None, float | None]
 
 
 def _middle(piece: Piece) -> Vec:
-    return piece.center if isinstance(piece, Circle) else point(piece, 0.5)
+    return piece.center if isinstance(piece, Circle) else piece.point(0.5)
 
 
 def _is_mirror(a: Piece, b: Piece, axis: int, middle: float, slack: float) -> bool:
     if isinstance(a, Circle) or isinstance(b, Circle):
         return isinstance(a, Circle) and isinstance(b, Circle) and abs(a.radius - b.radius) <= slack
-    spots = [flipped(point(a, t), axis, middle) for t in (0.0, 0.25, 1.0)]
+    spots = [flipped(a.point(t), axis, middle) for t in (0.0, 0.25, 1.0)]
     return type(a) is type(b) and any(
-        all(math.dist(p, point(b, t)) <= slack for p, t in zip(spots, ways, strict=True))
+        all(math.dist(p, b.point(t)) <= slack for p, t in zip(spots, ways, strict=True))
         for ways in ((0.0, 0.25, 1.0), (1.0, 0.75, 0.0))
     )
 

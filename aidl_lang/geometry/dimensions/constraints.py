@@ -20,7 +20,7 @@ from aidl_lang.building.wording import Wording
 from aidl_lang.common.materials import limits as fit_limits
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
-from aidl_lang.geometry.curves import NO_LENGTH, Arc, Circle, Line, Piece, Vec, point, turn_between
+from aidl_lang.geometry.curves import NO_LENGTH, Arc, Circle, Line, Piece, Vec, turn_between
 from aidl_lang.geometry.dimensions.features import (
     SizedGeometry,
     angle_of,
@@ -259,7 +259,7 @@ class _Statement:
         if line is None:
             p, q = self._point(a), self._point(b)
         else:
-            p = self._point(b if line_a else a) if not (line_a and line_b) else point(line_b or line, 0.5)
+            p = self._point(b if line_a else a) if not (line_a and line_b) else (line_b or line).point(0.5)
             q = foot(p, line) if p is not None else None
         return length_of_line(p, q) if p is not None and q is not None else None
 

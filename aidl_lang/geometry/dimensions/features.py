@@ -17,21 +17,7 @@ from aidl_lang.building.values import ListVal, Num
 from aidl_lang.checking.units import ANGLE, LENGTH
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
-from aidl_lang.geometry.curves import (
-    Arc,
-    Circle,
-    Ellipse,
-    EllipseArc,
-    Line,
-    Piece,
-    Vec,
-    ends,
-    extreme_parameters,
-    is_closed,
-    locate,
-    nearest,
-    point,
-)
+from aidl_lang.geometry.curves import Arc, Circle, Ellipse, EllipseArc, Line, Piece, Vec
 from aidl_lang.geometry.nearness import inside
 from aidl_lang.geometry.region import Region, region_bounds, region_polygons
 from aidl_lang.geometry.solved import (
@@ -77,7 +63,7 @@ class _Inside:
         if inside(self._polygons, np.array(spots)).any():
             return True
         borders = self._region.pieces
-        return any(math.dist(point(c, nearest(c, p)), p) <= self._near for p in spots for c in borders)
+        return any(math.dist(c.point(c.nearest(p)), p) <= self._near for p in spots for c in borders)
 
 
 def _ends(dimension: Dimension) -> Iterator[Sequence[Vec]]:
@@ -88,7 +74,7 @@ def _ends(dimension: Dimension) -> Iterator[Sequence[Vec]]:
                 shares = [k / _SPOTS for k in range(_SPOTS + 1)]
                 yield [(x0 + t * (x1 - x0), y0 + t * (y1 - y0)) for t in shares]
         case Roundness(curve=curve):
-            yield [point(curve, k / _SPOTS) for k in range(_SPOTS + 1)]
+            yield [curve.point(k / _SPOTS) for k in range(_SPOTS + 1)]
         case Opening(corner=corner):
             yield [corner]
 
@@ -129,13 +115,13 @@ def _spots(curve: Piece | Vec, u: Vec) -> Sequence[Vec]:
     """Returns points of a curve of which one is the furthest in a direction."""
     if isinstance(curve, tuple):
         return [curve]
-    own = [] if is_closed(curve) else list(ends(curve))
+    own = [] if curve.is_closed else list(curve.ends)
     if isinstance(curve, Circle | Arc):
         tip = curve.center[0] + curve.radius * u[0], curve.center[1] + curve.radius * u[1]
-        on_it = isinstance(curve, Circle) or locate(curve, tip, 1e-9 * curve.radius) is not None
+        on_it = isinstance(curve, Circle) or curve.locate(tip, 1e-9 * curve.radius) is not None
         return [*own, tip] if on_it else own
     if isinstance(curve, Ellipse | EllipseArc) or u in (X_AXIS, Y_AXIS, (-1.0, 0.0), (0.0, -1.0)):
-        own += [point(curve, t) for t in extreme_parameters(curve) if 0 <= t <= 1]
+        own += [curve.point(t) for t in curve.extremes() if 0 <= t <= 1]
     return own
 
 
@@ -359,7 +345,7 @@ class SizedGeometry:
         curve = self.solved.curve
         if isinstance(curve, Ellipse) and name in ("rx", "ry"):
             t = 0.0 if name == "rx" else 0.25
-            across = length_of_line(point(curve, t + 0.5), point(curve, t))
+            across = length_of_line(curve.point(t + 0.5), curve.point(t))
             yield from [across] if across else []
         elif "radius" in name or "diameter" in name:
             radius = value / 2 if "diameter" in name else value
@@ -441,7 +427,7 @@ def _fillets(
             continue
         fitting = [a for a in arcs if _same(a.radius, done.sizes[0])]
         for corner in done.corners if fitting else ():
-            arc = min(fitting, key=lambda a: math.dist(point(a, 0.5), corner))
+            arc = min(fitting, key=lambda a: math.dist(a.point(0.5), corner))
             yield replace(
                 round_dimension(arc),
                 origin=origin,
