@@ -18,7 +18,7 @@ from aidl_lang.common.prose import fixed, rough
 from aidl_lang.common.source import Span
 from aidl_lang.geometry.curves import Piece, inward, larger_side, union_bounds
 from aidl_lang.geometry.drawing import Drawing, all_geometry, region_alone
-from aidl_lang.geometry.region import Region, area, perimeter
+from aidl_lang.geometry.region import Region
 from aidl_lang.geometry.solved import SolvedModel, SolvedStructure
 from aidl_lang.solver.problem import Solution, Status
 
@@ -224,9 +224,9 @@ def measured(kind: str, regions: Sequence[Region], size: float) -> float:
 
     match kind:
         case "area":
-            return area(regions[0])
+            return regions[0].area
         case "perimeter":
-            return perimeter(regions[0])
+            return regions[0].perimeter
         case "clearance":
             return clearance(*regions)
         case _:

@@ -20,7 +20,7 @@ from aidl_lang.geometry.curves import Piece, larger_side, union_bounds
 from aidl_lang.geometry.drawing import SLIT, Body, Drawing, Stroke
 from aidl_lang.geometry.nearness import inside, near_pairs
 from aidl_lang.geometry.network import RELATIVE_TOLERANCE, Weld
-from aidl_lang.geometry.region import Face, Loop, Region, loop_area, loop_points
+from aidl_lang.geometry.region import Face, Loop, Region
 from aidl_lang.geometry.solved import SolvedModel
 from aidl_lang.geometry.styles import Style
 from aidl_lang.solver.valuation import connected
@@ -196,7 +196,7 @@ def _cuts(model: SolvedModel, drawing: Drawing, profile: Profile) -> Iterator[Ou
     kinds = {s.path: s.kind for s in model.root.walk()}
     edges = _HoleEdges(model, drawing)
     faces = [(face, body) for body in drawing.bodies for face in body.region.faces]
-    faces.sort(key=lambda pair: significant(loop_area(pair[0].outer)))
+    faces.sort(key=lambda pair: significant(pair[0].outer.area))
     late = _late(faces)
     for number, (face, body) in enumerate(faces):
         for k, loop in enumerate(face.holes):
@@ -241,7 +241,7 @@ def _late(faces: Sequence[tuple[Face, Body]]) -> set[tuple[int, int]]:
 def _holds(loop: Loop, face: Face) -> bool:
     """Tells whether most of an outline lies in a loop, on which it may end."""
     spots = np.array([piece.point(t) for piece in face.outer.pieces for t in (0.25, 0.5, 0.75)])
-    polygon = loop_points(loop, 0.01 * extent(loop.pieces))
+    polygon = loop.polygon(0.01 * extent(loop.pieces))
     return bool(inside([polygon], spots).mean() > 0.5)
 
 

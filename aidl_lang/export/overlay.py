@@ -19,7 +19,7 @@ from aidl_lang.export.marks import CHARACTER, Dot, Frame, Mark, Text, widened
 from aidl_lang.geometry.curves import Bounds, Vec, are_near, union_bounds
 from aidl_lang.geometry.drawing import Body, Drawing
 from aidl_lang.geometry.nearness import from_sides, inside
-from aidl_lang.geometry.region import COARSE, Region, piece_points, region_polygons
+from aidl_lang.geometry.region import COARSE, Region, piece_points
 from aidl_lang.geometry.solved import ConstraintReport, SolvedGeometry, SolvedModel, SolvedStructure
 
 # --- Names and numbers of parts on sheets, each where its part has room for it.
@@ -59,7 +59,7 @@ def _room(region: Region, engraved: list[NDArray[np.float64]], width: float) -> 
     """Returns the middle and the size of the largest text, so many times as wide as high, that lies in the
     material beside what is engraved, as near to the middle of the part as there is room.
     """
-    shrunk = [polygon / (width, 1.0) for polygon in region_polygons(region, COARSE)]
+    shrunk = [polygon / (width, 1.0) for polygon in region.polygons(COARSE)]
     sides = [_sides(np.concatenate((polygon, polygon[:1]))) for polygon in shrunk]
     sides += [_sides(line / (width, 1.0)) for line in engraved]
     outline = np.concatenate(shrunk)

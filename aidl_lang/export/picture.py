@@ -36,7 +36,7 @@ from aidl_lang.geometry.boolean import united, without
 from aidl_lang.geometry.curves import Bounds, Line, Piece, Vec, all_bounds, larger_side, union_bounds
 from aidl_lang.geometry.drawing import Body, Drawing, Stroke
 from aidl_lang.geometry.nearness import inside
-from aidl_lang.geometry.region import Polygon, Region, face_polygons, piece_points, region_bounds
+from aidl_lang.geometry.region import Polygon, Region, piece_points
 from aidl_lang.geometry.solved import SolvedModel, SolvedStructure
 from aidl_lang.geometry.styles import DASH, GAP, Shade, Style, layers, stacked, united_parts
 
@@ -169,7 +169,7 @@ class _Shape:
         air = 0.0
         match mark:
             case Area():
-                polygons = face_polygons(mark.face, DEVIATION)
+                polygons = mark.face.polygons(DEVIATION)
                 self._lines = [np.concatenate((p, p[:1])) for p in polygons]
                 self._filled = polygons if mark.fill else []
                 air = mark.ink.width / 2 if mark.ink else 0.0
@@ -246,7 +246,7 @@ def _whole(job: Job) -> Picture:
     options = job.options
     shadows = [] if options.for_cutter else list(_shadows(job.model.root, job.drawing))
     box = _picture_box(job.model, job.drawing, options.show)
-    box = union_bounds([box, *(region_bounds(Region((area.face,))) for _, area in shadows)])
+    box = union_bounds([box, *(Region((area.face,)).box for _, area in shadows)])
     size = larger_side(box) or 1.0
     seen, dimensions = box, tuple[Group, ...]()
     if options.dimension:

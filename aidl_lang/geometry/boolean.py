@@ -28,16 +28,16 @@ from aidl_lang.geometry.curves import (
 )
 from aidl_lang.geometry.intersect import Crossing, Table, all_intersections, meet
 from aidl_lang.geometry.nearness import inside, near_pairs, near_rows
-from aidl_lang.geometry.network import CHORD, RELATIVE_TOLERANCE, Hulls, Network, with_finer_chords
-from aidl_lang.geometry.region import Face, Loop, Region, area, loop_area, region_bounds, region_polygons
+from aidl_lang.geometry.network import CHORD, RELATIVE_TOLERANCE, Hulls, Network
+from aidl_lang.geometry.region import Face, Loop, Region
 from aidl_lang.geometry.sections import (
     NEGLIGIBLE,
     Section,
+    arranged,
     closed_loop,
     difference,
     faces_of,
     filled,
-    first_point,
     intersection,
     is_nothing,
     trace,
@@ -82,7 +82,7 @@ def lie_within(a: Region, b: Region, reach: float) -> bool:
 def nearest_region(ours: Sequence[Region], others: Sequence[Region]) -> tuple[float, int]:
     """Returns the least distance of outlines on either side, and the place of the other one's region."""
     best = math.inf, 0
-    away = _apart(*(np.array([region_bounds(region) for region in side]) for side in (ours, others)))
+    away = _apart(*(np.array([region.box for region in side]) for side in (ours, others)))
     for pair in np.argsort(away, axis=None, kind="stable").tolist():
         i, j = divmod(pair, len(others))
         if away[i, j] >= best[0]:
@@ -200,7 +200,7 @@ def within(cover: Region, regions: Sequence[Region]) -> Region:
 
 def overlap_area(a: Region, b: Region) -> float:
     """Returns the area of the intersection of two regions, mm²."""
-    return area(common(a, b))
+    return common(a, b).area
 
 
 def clearance(a: Region, b: Region) -> float:
@@ -237,15 +237,13 @@ def _may_hold(region: Region, other: Region) -> bool:
 
 
 def _combined(regions: Sequence[Region], operation: Callable[..., Section]) -> Region:
-    network = Network([piece for region in regions for piece in region.pieces])
     firsts = list(accumulate((len(region.pieces) for region in regions), initial=0))
 
-    def traced() -> Region:
+    def area(network: Network) -> Section:
         placed = zip(regions, firsts, strict=False)
-        sections = (filled(network, [loop.pieces for loop in r.loops], first) for r, first in placed)
-        return trace(network, operation(*sections)).region
+        return operation(*(filled(network, [loop.pieces for loop in r.loops], k) for r, k in placed))
 
-    return with_finer_chords(network, traced)
+    return arranged([piece for region in regions for piece in region.pieces], area)
 
 
 # --- Outlines that touch each other in a point, with a joint there: boundary representations want a vertex
@@ -303,7 +301,7 @@ def clipped_each(curves: Sequence[Piece], region: Region, *, with_border: bool =
     tolerance = RELATIVE_TOLERANCE * size
     stretches = stretches_beside(curves, region.pieces, boxes, tolerance)
     spots = [c.point(s.middle) for c, of in zip(curves, stretches, strict=True) for s in of]
-    polygons = region_polygons(region, CHORD * size)
+    polygons = region.polygons(CHORD * size)
     within = iter(inside(polygons, np.array(spots).reshape(-1, 2)).tolist())
     return [
         _clipped(c, of, [next(within) for _ in of], with_border)
@@ -415,7 +413,6 @@ class Solid:
     path: str
     region: Region
     section: Section = field(repr=False, compare=False)
-    box: Bounds
     place: float
     color: str | None
     is_clear: bool
@@ -442,7 +439,7 @@ def contacts(network: Network, solids: Sequence[Solid]) -> Contacts:
 
     def near() -> tuple[tuple[str, str], ...]:
         reach = max(UNNOTICED, network.tolerance)
-        pairs = sorted(near_pairs([solid.box for solid in solids], reach + network.tolerance))
+        pairs = sorted(near_pairs([solid.region.box for solid in solids], reach + network.tolerance))
         couples = ((solids[i], solids[j]) for i, j in pairs)
         return tuple(
             (a.path, b.path)
@@ -453,7 +450,7 @@ def contacts(network: Network, solids: Sequence[Solid]) -> Contacts:
     def everything() -> tuple[Contact, ...]:
         pairs: Iterable[tuple[int, int]] = combinations(range(len(solids)), 2)
         if len(solids) > ALL_PAIRS:
-            pairs = sorted(near_pairs([solid.box for solid in solids], NEAR * network.size))
+            pairs = sorted(near_pairs([solid.region.box for solid in solids], NEAR * network.size))
         return tuple(_compare(network, solids[i], solids[j]) for i, j in pairs)
 
     return Contacts(tuple((s.path, s.region) for s in solids), Later(near), Later(everything))
@@ -466,7 +463,7 @@ def _shared(network: Network, a: Solid, b: Solid, *, exactly: bool) -> float:
         return 0.0
     left, bottom, right, top = common.bounds()
     thin = _THIN * common.num_contour() * ((right - left) + (top - bottom))
-    return common.area() if common.area() > thin and not exactly else area(trace(network, common).region)
+    return common.area() if common.area() > thin and not exactly else trace(network, common).region.area
 
 
 def _compare(network: Network, a: Solid, b: Solid) -> Contact:
@@ -495,23 +492,20 @@ def lettered_region(letters: Sequence[Sequence[Piece]]) -> Region | None:
         contours = list(_contours(letter))
         if any(contour[0].ends[0] != contour[-1].ends[1] for contour in contours):
             return None
-        areas = [loop_area(Loop(contour)) for contour in contours]
+        areas = [Loop(contour).area for contour in contours]
         sense = math.copysign(1.0, max(areas, key=abs))
         turned = [c if sense > 0 else tuple(piece.reversed() for piece in reversed(c)) for c in contours]
         loops = (closed_loop(contour, tolerance) for contour in turned)
         faces += faces_of([(sense * area, loop) for area, loop in zip(areas, loops, strict=True)])
-    return Region(tuple(sorted(faces, key=lambda face: first_point(face.outer))))
+    return Region(tuple(sorted(faces, key=lambda face: face.outer.start)))
 
 
 @lru_cache(maxsize=512)
 def united_character(outline: tuple[Curve, ...]) -> tuple[Curve, ...]:
     """Returns the outline of what the contours of a character enclose together, by the non-zero rule."""
-    network = Network([Line(*c) if len(c) == 2 else Bezier(*c) for c in outline])
-
-    def traced() -> Region:
-        return trace(network, filled(network, _contours(network.curves), 0, "NonZero")).region
-
-    return tuple(_points(piece) for piece in with_finer_chords(network, traced).pieces)
+    curves = [Line(*c) if len(c) == 2 else Bezier(*c) for c in outline]
+    region = arranged(curves, lambda network: filled(network, _contours(curves), 0, "NonZero"))
+    return tuple(map(_points, region.pieces))
 
 
 _ROUNDS = 4
@@ -530,18 +524,18 @@ def stencilled(outline: tuple[Curve, ...], width: float) -> tuple[Curve, ...]:
             break
         beyond = width * 2**wider
         region = without(region, *(bar for hole in counters for bar in _bridges(region, hole, width, beyond)))
-    return tuple(_points(piece) for piece in region.pieces)
+    return tuple(map(_points, region.pieces))
 
 
 def _bridges(region: Region, counter: Loop, width: float, beyond: float) -> Iterator[Region]:
     """Yields the areas of a letter to be taken away for a counter. They reach `beyond` the far side of a
     stroke, which may be slanted, but no further than half of the way to the next one.
     """
-    left, low, right, high = region_bounds(Region((Face(counter),)))
+    left, low, right, high = Region((Face(counter),)).box
     x, middle = (left + right) / 2, (low + high) / 2
-    _, bottom, _, top = region_bounds(region)
+    _, bottom, _, top = region.box
     line = _rectangle(x - 1e-3 * width, bottom - width, x + 1e-3 * width, top + width)
-    strokes = sorted(region_bounds(Region((face,)))[1::2] for face in common(region, line).faces)
+    strokes = sorted(Region((face,)).box[1::2] for face in common(region, line).faces)
     above = [stroke for stroke in strokes if stroke[0] > middle]
     below = [stroke for stroke in reversed(strokes) if stroke[1] < middle]
     if above:

@@ -55,7 +55,7 @@ from aidl_lang.geometry.notes import (
     upright_note,
 )
 from aidl_lang.geometry.pieces import LETTERING, piece_notes
-from aidl_lang.geometry.region import Face, Measures, Region, measure, region_bounds, region_polygons
+from aidl_lang.geometry.region import Face, Measures, Region, measure
 from aidl_lang.geometry.sections import (
     Section,
     Traced,
@@ -97,7 +97,10 @@ class Body:
     path: str
     region: Region
     style: Style
-    box: Bounds
+
+    @property
+    def box(self) -> Bounds:
+        return self.region.box
 
 
 @record()
@@ -223,13 +226,10 @@ def draw(model: SolvedModel) -> tuple[Drawing, Findings]:
         root, network, shapes, partial(_arranged, root, made, clips, blind)
     )
     regions = {path: outline.region for path, outline in traced.items()}
-    bodies = tuple(
-        Body(path, regions[path], of_bodies[path], region_bounds(regions[path]))
-        for path in (m.structure.path for m in masses)
-    )
+    bodies = tuple(Body(path, regions[path], of_bodies[path]) for path in (m.structure.path for m in masses))
     order = places_of(root)
     solids = [
-        Solid(b.path, b.region, m.section, b.box, order[b.path], b.style.color, b.style.is_clear)
+        Solid(b.path, b.region, m.section, order[b.path], b.style.color, b.style.is_clear)
         for b, m in zip(bodies, masses, strict=True)
     ]
     touching = contacts(network, solids)
@@ -294,11 +294,11 @@ def _closed(
     arranged: Callable[[Network], _Arranged],
 ) -> tuple[Network, Bodies, list[Mass], dict[str, Traced], list[Gap]]:
     """Returns the network with small gaps between curves closed, what they enclose, and these gaps."""
-    found = with_finer_chords(network, partial(arranged, network))
+    found = with_finer_chords(network, arranged)
     gaps = open_gaps(network, found[0].findings, shapes)
     while gaps:
         joined = Network(without_gaps(network.curves, gaps), box=network.box)
-        then = with_finer_chords(joined, partial(arranged, joined))
+        then = with_finer_chords(joined, arranged)
         kept = effective(gaps, then[0].findings)
         if len(kept) == len(gaps):
             network, found = joined, then
@@ -526,7 +526,7 @@ def _areas(
                 found = list(_told_apart([shape], ink, is_area=True))
                 region = Region(next((faces for _, faces in found if faces), ()))
                 loose = next((lines for lines, faces in found if not faces), ())
-                polygons = map(np.array, region_polygons(region, network.tolerance))
+                polygons = map(np.array, region.polygons(network.tolerance))
                 whole = section = fill([network.to_grid(p) * np.float64(GRID) for p in polygons], "EvenOdd")
             else:
                 whole = union_of(own_faces(network, [shape]).faces)
@@ -542,8 +542,8 @@ def _areas(
                     section = difference(section, above[key])  # in the colour of the body again
                 region = trace(network, section).region
             if region:
-                look, box = styled(styles[structure.path], g), region_bounds(region)
-                seen = Solid(g.path, region, section, box, place, look.color, look.is_clear)
+                look = styled(styles[structure.path], g)
+                seen = Solid(g.path, region, section, place, look.color, look.is_clear)
                 yield g.path, _Area(seen, whole, loose)
 
 

@@ -182,7 +182,7 @@ def _walks(network: Network, uses: Sequence[Use]) -> Iterator[list[Use]]:
     """Yields the runs of edges of which each begins where the one before it ends, as the file has them."""
     walk: list[Use] = []
     for use in uses:
-        if walk and first_node(network, use) != last_node(network, walk[-1]):
+        if walk and network.first(use) != network.last(walk[-1]):
             yield walk
             walk = []
         walk.append(use)
@@ -256,7 +256,7 @@ def own_faces(network: Network, shapes: Sequence[Shape]) -> OwnFaces:
     for shape in shapes:
         uses = [use for number in shape.numbers for use in network.uses[number]]
         is_curve = not shape.geometry.parts and len(shape.leaves) == 1
-        is_open = is_curve and uses and first_node(network, uses[0]) != last_node(network, uses[-1])
+        is_open = is_curve and uses and network.first(uses[0]) != network.last(uses[-1])
         kept = [] if is_open else _without_dangling(network, uses)
         if kept:
             section, crossed = _area(network, shape, kept)
@@ -303,17 +303,6 @@ def _touches(network: Network, curve: int, edges: set[int]) -> bool:
     return any(edge in edges for edge, _ in network.uses[curve])
 
 
-def first_node(network: Network, use: Use) -> int:
-    """Returns the node at which the use of an edge begins."""
-    edge = network.edges[use[0]]
-    return edge.start if use[1] else edge.end
-
-
-def last_node(network: Network, use: Use) -> int:
-    """Returns the node at which the use of an edge ends."""
-    return first_node(network, (use[0], not use[1]))
-
-
 def _without_dangling(network: Network, uses: Iterable[Use]) -> list[Use]:
     """Returns the edges without those that lead to an open end, removed repeatedly."""
     kept = list(uses)
@@ -350,8 +339,8 @@ def _loops(network: Network, uses: list[Use]) -> list[list[Use]]:
     """Returns closed walks that use every edge once; every node has an even degree."""
     ways: dict[int, list[Use]] = defaultdict(list)
     for edge, forward in reversed(uses):
-        ways[first_node(network, (edge, forward))].append((edge, forward))
-        ways[last_node(network, (edge, forward))].append((edge, not forward))
+        ways[network.first((edge, forward))].append((edge, forward))
+        ways[network.last((edge, forward))].append((edge, not forward))
     left = Counter(edge for edge, _ in uses)
     loops = []
     for use in uses:
@@ -364,7 +353,7 @@ def _walk(network: Network, first: Use, ways: dict[int, list[Use]], left: dict[i
     """Returns the loop of edges from the first onwards until its start comes round again."""
     loop = [first]
     left[first[0]] -= 1
-    while (node := last_node(network, loop[-1])) != first_node(network, first):
+    while (node := network.last(loop[-1])) != network.first(first):
         following = next(use for use in ways[node] if left[use[0]])
         left[following[0]] -= 1
         loop.append(following)
@@ -400,7 +389,7 @@ def _next_clockwise(network: Network, edges: list[int]) -> dict[Use, Use]:
     for edge in edges:
         for forward in (True, False):
             use = (edge, forward)
-            leaving[first_node(network, use)].append((_direction(network, use), use))
+            leaving[network.first(use)].append((_direction(network, use), use))
     turn: dict[Use, Use] = {}
     for ways in leaving.values():
         around = [use for _, use in sorted(ways)]
@@ -411,8 +400,8 @@ def _next_clockwise(network: Network, edges: list[int]) -> dict[Use, Use]:
 
 def _direction(network: Network, use: Use) -> float:
     inner = network.inner(use)
-    target = inner[0] if len(inner) else network.node_grid[last_node(network, use)]
-    dx, dy = target - network.node_grid[first_node(network, use)]
+    target = inner[0] if len(inner) else network.node_grid[network.last(use)]
+    dx, dy = target - network.node_grid[network.first(use)]
     return math.atan2(dy, dx)
 
 
@@ -425,8 +414,8 @@ def _chain_free(
     used: set[int] = set()
     joined = Joined()
     for use in kept:
-        joined.join(first_node(network, use), last_node(network, use))
-    for part in joined.groups(kept, lambda use: first_node(network, use)):
+        joined.join(network.first(use), network.last(use))
+    for part in joined.groups(kept, lambda use: network.first(use)):
         polygons, bounding = _outlines(network, part)
         section = fill(polygons, "NonZero")
         if not is_nothing(section):
@@ -470,13 +459,12 @@ def region_of(
         curves += [curve for _, curve in leaves]
     if not curves:
         return Region(), []
-    network = Network(curves)
 
-    def traced() -> tuple[Region, list[SolvedGeometry]]:
+    def traced(network: Network) -> tuple[Region, list[SolvedGeometry]]:
         found = own_faces(network, shapes)
         return trace(network, union_of(found.faces)).region, [leaf for leaf, _ in found.loose]
 
-    return with_finer_chords(network, traced)
+    return with_finer_chords(Network(curves), traced)
 
 
 def union_of(faces: Iterable[OwnFace]) -> Section:

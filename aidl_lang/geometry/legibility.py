@@ -20,13 +20,13 @@ from aidl_lang.common.records import record
 from aidl_lang.common.source import Span
 from aidl_lang.geometry.boolean import Solid, stretches_beside
 from aidl_lang.geometry.curves import NO_LENGTH, Bounds, Line, Piece, Vec, all_bounds, are_near, union_bounds
-from aidl_lang.geometry.faces import Shape, first_node, last_node
+from aidl_lang.geometry.faces import Shape
 from aidl_lang.geometry.intersect import meet
 from aidl_lang.geometry.nearness import from_sides, inside
 from aidl_lang.geometry.network import GRID, Network, Use
 from aidl_lang.geometry.notes import at, local
 from aidl_lang.geometry.pieces import LETTERING
-from aidl_lang.geometry.region import Region, length, loop_points
+from aidl_lang.geometry.region import Region, length
 from aidl_lang.geometry.sections import (
     Section,
     boxes_meet,
@@ -87,7 +87,7 @@ class Ground:
     def covering(self, curves: Sequence[int], place: float) -> str | None:
         """Returns the path of a body that is drawn over all of some curves; None if there is none."""
         box = union_bounds([self.boxes[curve] for curve in curves])
-        over = [k for k in self._above(curves, place) if _lies_within(box, self.bodies[k].box)]
+        over = [k for k in self._above(curves, place) if _lies_within(box, self.bodies[k].region.box)]
         over = [k for k in over if all(k in self._at_middles[curve] for curve in curves)]
         within = [on for _, on in self._parts(curves, over)]
         return next((self.bodies[k].path for k in over if all(k in on for on in within)), None)
@@ -106,7 +106,7 @@ class Ground:
 
     def _around(self, curves: Sequence[int], bodies: Iterable[int]) -> list[int]:
         box = union_bounds([self.boxes[curve] for curve in curves])
-        return [k for k in bodies if curves and are_near(box, self.bodies[k].box)]
+        return [k for k in bodies if curves and are_near(box, self.bodies[k].region.box)]
 
     def hidden_part(self, faces: Section, place: float) -> tuple[float, list[str]]:
         """Returns the share of faces that later bodies cover, and these, but for inlays within the faces."""
@@ -241,7 +241,7 @@ def overhang(pieces: Sequence[Piece], region: Region, *, partly: bool = False) -
     `partly` for those that lie beside it altogether.
     """
     size = float(np.ptp(region.boxes.reshape(-1, 2), axis=0).max(initial=0.0))
-    polygons = [loop_points(face.outer, 1e-5 * size) for face in region.faces]
+    polygons = [face.outer.polygon(1e-5 * size) for face in region.faces]
     spots = np.concatenate([piece.points(_TIMES) for piece in pieces])
     out = ~inside(polygons, spots)
     if partly and out.all():
@@ -392,31 +392,31 @@ def _rings(network: Network, way: SolvedGeometry, numbers: Mapping[int, int]) ->
     ring: list[tuple[Use, SolvedGeometry]] = []
     for place, leaf in enumerate(leaves):
         uses = network.uses[numbers[id(leaf)]]
-        if ring and last_node(network, ring[-1][0]) not in _ends(network, uses):
+        if ring and network.last(ring[-1][0]) not in _ends(network, uses):
             yield from _closed(network, ring)
             ring = []
         if ring:
-            is_turned = first_node(network, uses[0]) != last_node(network, ring[-1][0])
+            is_turned = network.first(uses[0]) != network.last(ring[-1][0])
         else:  # a curve may be drawn against the way: the next one begins where it ends
             following = network.uses[numbers[id(leaves[place + 1])]] if place + 1 < len(leaves) else uses
-            is_turned = last_node(network, uses[-1]) not in _ends(network, following)
+            is_turned = network.last(uses[-1]) not in _ends(network, following)
         ring += [(use, leaf) for use in (map(_back, reversed(uses)) if is_turned else uses)]
     yield from _closed(network, ring)
 
 
 def _closed(network: Network, ring: list[tuple[Use, SolvedGeometry]]) -> Iterator[list[_Pass]]:
     """Yields the passes of a round if it ends where it begins, and comes to a node twice."""
-    nodes = {first_node(network, use) for use, _ in ring}
-    if len(nodes) < len(ring) and first_node(network, ring[0][0]) == last_node(network, ring[-1][0]):
+    nodes = {network.first(use) for use, _ in ring}
+    if len(nodes) < len(ring) and network.first(ring[0][0]) == network.last(ring[-1][0]):
         rolled = [*ring[1:], ring[0]]
         yield [
-            _Pass(first_node(network, on), _back(use), on, leaf)
+            _Pass(network.first(on), _back(use), on, leaf)
             for (use, leaf), (on, _) in zip(ring, rolled, strict=True)
         ]
 
 
 def _ends(network: Network, uses: Sequence[Use]) -> tuple[int, int]:
-    return first_node(network, uses[0]), last_node(network, uses[-1])
+    return network.first(uses[0]), network.last(uses[-1])
 
 
 def _back(use: Use) -> Use:

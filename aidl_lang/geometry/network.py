@@ -362,6 +362,15 @@ class Network:
             edge = edges[k]
             self.straight[edge.start, edge.end] = self.straight[edge.end, edge.start] = k
 
+    def first(self, use: Use) -> int:
+        """Returns the node at which the use of an edge begins."""
+        edge = self.edges[use[0]]
+        return edge.start if use[1] else edge.end
+
+    def last(self, use: Use) -> int:
+        """Returns the node at which the use of an edge ends."""
+        return self.first((use[0], not use[1]))
+
     def inner(self, use: Use) -> Ints:
         """Returns the grid points strictly between the ends of an edge, in the direction of the use."""
         begin = self._offset[use[0]]
@@ -377,11 +386,9 @@ class Network:
     def polyline(self, uses: Sequence[Use]) -> Floats:
         """Returns the closed polygon through these edges, in grid units as Manifold takes them."""
         rows: list[Ints] = []
-        for number, forward in uses:
-            edge = self.edges[number]
-            node = edge.start if forward else edge.end
-            rows.append(self.node_grid[node : node + 1])
-            rows.append(self.inner((number, forward)))
+        for use in uses:
+            node = self.first(use)
+            rows += [self.node_grid[node : node + 1], self.inner(use)]
         return np.concatenate(rows).astype(np.float64) * GRID
 
     def meeting(self, numbers: Iterable[int]) -> Counter[int]:
@@ -392,9 +399,8 @@ class Network:
     def piece(self, use: Use) -> Piece:
         """Returns the part of its curve that runs along an edge, in the direction of the use."""
         edge = self.edges[use[0]]
-        ways = (edge.t0, edge.t1, edge.start, edge.end), (edge.t1, edge.t0, edge.end, edge.start)
-        t0, t1, start, end = ways[0] if use[1] else ways[1]
-        return self.curves[edge.curve].part(t0, t1, self.nodes[start], self.nodes[end])
+        t0, t1 = (edge.t0, edge.t1) if use[1] else (edge.t1, edge.t0)
+        return self.curves[edge.curve].part(t0, t1, self.nodes[self.first(use)], self.nodes[self.last(use)])
 
     def midpoints(self, numbers: Sequence[int]) -> Floats:
         """Returns a point about halfway along each of some edges, in grid units."""
@@ -447,13 +453,13 @@ class Network:
         return self._sides
 
 
-def with_finer_chords(network: Network, work: Callable[[], T]) -> T:
-    """Returns the result of `work`, done again with finer chords while curves come too close for them."""
+def with_finer_chords(network: Network, work: Callable[[Network], T]) -> T:
+    """Returns the result of work, done again with finer chords while curves come too close for them."""
     network.may_refine = True
     while True:
         checkpoint()
         try:
-            result = work()
+            result = work(network)
         except TooCoarse:
             network.refine()
         else:

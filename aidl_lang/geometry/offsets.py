@@ -22,9 +22,9 @@ from aidl_lang.geometry.curves import (
     union_bounds,
 )
 from aidl_lang.geometry.finishing import direction, parallel
-from aidl_lang.geometry.network import Network, with_finer_chords
+from aidl_lang.geometry.network import Network
 from aidl_lang.geometry.region import Face, Loop, Region
-from aidl_lang.geometry.sections import difference, filled, trace, union
+from aidl_lang.geometry.sections import Section, arranged, difference, filled, union
 
 # --- The pieces that offsets are put together from: strips along curves, wedges at corners, caps at ends.
 #
@@ -241,18 +241,17 @@ def _joints(curves: Sequence[Piece], near: float) -> list[tuple[Vec, list[Vec]]]
 
 def _combined(region: Region, strips: Sequence[Strip], *, cut: bool) -> Region:
     strokes = (p for strip in strips for outline in strip for p in outline)
-    network = Network([*region.pieces, *strokes])
 
-    def traced() -> Region:
+    def area(network: Network) -> Section:
         place, sections = len(region.pieces), []
         for strip in strips:
             # Normals of a curve that bends closely cross: all that a single outline goes around counts.
             sections.append(filled(network, strip, place, "NonZero" if len(strip) == 1 else "EvenOdd"))
             place += sum(map(len, strip))
         base, added = filled(network, [loop.pieces for loop in region.loops], 0), union(sections)
-        return trace(network, difference(base, added) if cut else union([base, added])).region
+        return difference(base, added) if cut else union([base, added])
 
-    return with_finer_chords(network, traced)
+    return arranged([*region.pieces, *strokes], area)
 
 
 # --- The convex hull of curves: parts of the curves themselves, and the straight lines that touch two of

@@ -18,7 +18,7 @@ from aidl_lang.geometry.faces import region_of
 from aidl_lang.geometry.finishing import Arm, Corner, Result, Work, arms_at, corners_of, finish, largest
 from aidl_lang.geometry.offsets import NEAR, hull, offset, thick
 from aidl_lang.geometry.outline_notes import Misfit, merged_notes, misfits
-from aidl_lang.geometry.region import Region, area, length
+from aidl_lang.geometry.region import Region, length
 from aidl_lang.geometry.solved import (
     Box,
     Finish,
@@ -146,7 +146,7 @@ class _Outliner:
             return _with_parts(g, tuple(map(self._drawn, g.parts)))
         exact = self._exact(g, g.recipe)
         regions = [_region([_shown(one)]) for one in (g, exact)]
-        areas = [area(r) for r in regions]
+        areas = [r.area for r in regions]
         return g if abs(areas[0] - areas[1]) <= _SAME_AREA * abs(areas[1]) else exact
 
     def _exact(self, g: SolvedGeometry, recipe: Recipe) -> SolvedGeometry:

@@ -27,7 +27,7 @@ from aidl_lang.geometry.curves import (
 from aidl_lang.geometry.drawing import SLIT, Body, Drawing, Seam, Stroke
 from aidl_lang.geometry.legibility import Holders, owner
 from aidl_lang.geometry.notes import united_notes
-from aidl_lang.geometry.region import COARSE, Region, face_polygons, length, region_bounds
+from aidl_lang.geometry.region import COARSE, Region, length
 from aidl_lang.geometry.solved import Frame, SolvedStructure
 
 # --- The parts that drawings are engraved on, for drawings whose parts are taken from one another.
@@ -154,13 +154,12 @@ class Part:
             )
             for s in self.strokes
         )
-        box = region_bounds(region)
         return Part(
-            replace(self.body, region=region, box=box),
+            replace(self.body, region=region),
             strokes,
             tuple(replace(seam, pieces=by.pieces(seam.pieces)) for seam in self.seams),
             {path: below.mapped(by.piece) for path, below in self.regions.items()},
-            union_bounds([box, *(piece.box for s in strokes for piece in s.pieces)]),
+            union_bounds([region.box, *(piece.box for s in strokes for piece in s.pieces)]),
         )
 
 
@@ -197,7 +196,7 @@ def _parts(drawing: Drawing, on: dict[str, list[Stroke]]) -> Iterator[Part]:
         strokes = tuple(on.get(body.path, ()))
         box = union_bounds([body.box, *(piece.box for s in strokes for piece in s.pieces)])
         regions = below[body.path]
-        regions |= {p: r for p, r in shared.items() if are_near(region_bounds(r), body.box)}
+        regions |= {p: r for p, r in shared.items() if are_near(r.box, body.box)}
         yield Part(body, strokes, tuple(seams[body.path]), regions, box)
 
 
@@ -235,13 +234,13 @@ def gathered(things: Iterable[T], key: Callable[[T], Hashable]) -> list[list[T]]
 
 def shape_of(body: Body) -> Hashable:
     """Returns a key that bodies share which are moved copies of each other, and of one stock."""
-    box, style = region_bounds(body.region), body.style
+    box, style = body.region.box, body.style
     places = _places(body.region.pieces, box)
     return style.material, style.thickness, style.quantity, round(larger_side(box), 6), places
 
 
 def _engraving(part: Part) -> Hashable:
-    box = region_bounds(part.body.region)
+    box = part.body.region.box
     return tuple(sorted((s.style.layer or "", _places(s.pieces, box)) for s in part.strokes))
 
 
@@ -256,7 +255,7 @@ def upright_turn(part: Part) -> float:
     """Returns the turn, degrees, after which the box around a part is smallest; 0 if no turn saves area."""
     from scipy.spatial import ConvexHull
 
-    outer = np.concatenate([face_polygons(face, COARSE)[0] for face in part.body.region.faces])
+    outer = np.concatenate([face.polygons(COARSE)[0] for face in part.body.region.faces])
     corners = outer[ConvexHull(outer).vertices]
     ways = np.roll(corners, -1, axis=0) - corners
     angles = np.unique(np.round(np.arctan2(ways[:, 1], ways[:, 0]) % (math.pi / 2), 12))
@@ -273,9 +272,7 @@ def upright_turn(part: Part) -> float:
 def smallest_size(part: Part) -> Size:
     """Returns the sides, mm, of the least rectangle around a part, the longer first if turned for it."""
     turn = upright_turn(part)
-    left, bottom, right, top = (
-        region_bounds(part.body.region.mapped(Motion(turn).piece)) if turn else part.body.box
-    )
+    left, bottom, right, top = part.body.region.mapped(Motion(turn).piece).box if turn else part.body.box
     width, height = right - left, top - bottom
     return (max(width, height), min(width, height)) if turn else (width, height)
 

@@ -16,12 +16,11 @@ from aidl_lang.common.records import record
 from aidl_lang.common.source import Span
 from aidl_lang.geometry.bodies import Bodies, Mass
 from aidl_lang.geometry.boolean import UNNOTICED, Solid, lie_within, nearest_region
-from aidl_lang.geometry.curves import Bounds
 from aidl_lang.geometry.faces import OwnFace, union_of
 from aidl_lang.geometry.nearness import near_pairs
 from aidl_lang.geometry.network import Joined
 from aidl_lang.geometry.notes import marked_detached
-from aidl_lang.geometry.region import Region, region_bounds
+from aidl_lang.geometry.region import Region
 from aidl_lang.geometry.sections import (
     Section,
     boxes_meet,
@@ -30,6 +29,7 @@ from aidl_lang.geometry.sections import (
     holes_of,
     intersection,
     is_nothing,
+    trace,
     trace_all,
     union,
 )
@@ -49,7 +49,6 @@ LETTERING = "text"
 class _Piece:
     section: Section
     region: Region
-    box: Bounds
     faces: tuple[OwnFace, ...]
 
     def meets(self, section: Section, region: Region) -> bool:
@@ -103,7 +102,7 @@ def _pieces(walk: Bodies, mass: Mass) -> list[_Piece]:
             of[i].append(faces[j - count])
     traced = trace_all(walk.network, sections)
     return [
-        _Piece(section, outline.region, region_bounds(outline.region), tuple(own))
+        _Piece(section, outline.region, tuple(own))
         for section, outline, own in zip(sections, traced, of, strict=True)
         if own  # else it is a hole beside the material
     ]
@@ -134,7 +133,7 @@ def _groups(
         for number, piece in enumerate(pieces):
             if piece.meets(other.section, other.region):
                 joined.join(number, other.path)
-    for i, j in near_pairs([piece.box for piece in pieces], UNNOTICED):
+    for i, j in near_pairs([piece.region.box for piece in pieces], UNNOTICED):
         if lie_within(pieces[i].region, pieces[j].region, UNNOTICED):
             joined.join(i, j)
     of: dict[int, int] = {}
@@ -232,7 +231,7 @@ def _severed(
 def _cut_through(
     walk: Bodies, solid: SolvedStructure, holes: Sequence[SolvedStructure], pieces: Sequence[Section]
 ) -> Diagnostic:
-    boxes = [region_bounds(traced.region) for traced in trace_all(walk.network, pieces)]
+    boxes = [traced.region.box for traced in trace_all(walk.network, pieces)]
     sizes = [f"{rough(b[2] - b[0])} × {rough(b[3] - b[1])} mm" for b in boxes[:_MOST]]
     more = f" and {len(boxes) - _MOST} more" if len(boxes) > _MOST else ""
     first = holes[0]
@@ -305,8 +304,7 @@ def _was_joined(walk: Bodies, mass: Mass, piece: Section, opening: Section) -> b
 def _touches(walk: Bodies, piece: Section, others: Sequence[Solid]) -> bool:
     if not others:
         return False
-    region = trace_all(walk.network, [piece])[0].region
-    known = _Piece(piece, region, region_bounds(region), ())
+    known = _Piece(piece, trace(walk.network, piece).region, ())
     return any(known.meets(other.section, other.region) for other in others)
 
 
@@ -331,7 +329,7 @@ def _fallen(
 ) -> Diagnostic:
     """Returns the warning on pieces that a hole cuts free; `around`: the names of its geometries there."""
     count, largest = len(pieces), max(pieces, key=lambda piece: piece.area())
-    left, bottom, right, top = region_bounds(trace_all(walk.network, [largest])[0].region)
+    left, bottom, right, top = trace(walk.network, largest).region.box
     size = f"{rough(right - left)} × {rough(top - bottom)} mm"
     cuts = [g for f in walk.faces[hole.path] for g in f.geometries]
     fall = "a piece falls" if count == 1 else f"{count} pieces fall"

@@ -19,7 +19,6 @@ from aidl_lang.geometry.curves import (
     Bezier,
     Bounds,
     Circle,
-    Ellipse,
     Floats,
     Line,
     Piece,
@@ -49,7 +48,35 @@ class Loop:
     @property
     def is_whole(self) -> bool:
         """True if the loop is a single closed curve without ends."""
-        return len(self.pieces) == 1 and isinstance(self.pieces[0], Circle | Ellipse)
+        return len(self.pieces) == 1 and self.pieces[0].is_closed
+
+    @property
+    def start(self) -> Vec:
+        """Where it begins, by which loops and faces are in order."""
+        return self.pieces[0].ends[0]
+
+    @property
+    def area(self) -> float:
+        """The area, positive counter-clockwise."""
+        at = self.start
+        area = sum(_bezier_area(p, at) if isinstance(p, Bezier) else _moments(p, at)[0] for p in self.pieces)
+        return -area if self.reversed else area
+
+    @property
+    def moments(self) -> Moments:
+        """The moments about its start: far from the origin nothing cancels there."""
+        a = mx = my = 0.0
+        for da, dx, dy in (_moments(piece, self.start) for piece in self.pieces):
+            a, mx, my = a + da, mx + dx, my + dy
+        sign = -1 if self.reversed else 1
+        return sign * a, sign * mx, sign * my
+
+    def polygon(self, tolerance: float) -> Polygon:
+        """Returns its polygon in its own direction (`tolerance` in mm, above 0)."""
+        if not tolerance > 0:
+            raise ValueError(f"the tolerance must be above 0, not {tolerance}")
+        polygon = np.concatenate([_from_start(piece, tolerance) for piece in self.pieces])
+        return polygon[::-1] if self.reversed else polygon
 
 
 @record(slots=True)
@@ -65,6 +92,10 @@ class Face:
 
     def mapped(self, moved: Callable[[Piece], Piece]) -> Face:
         return Face(self.outer.mapped(moved), tuple(hole.mapped(moved) for hole in self.holes))
+
+    def polygons(self, tolerance: float) -> list[Polygon]:
+        """Returns the outer polygon, counter-clockwise, then those of the holes, clockwise."""
+        return [_faithful(loop, tolerance) for loop in self.loops]
 
 
 @record()
@@ -92,6 +123,22 @@ class Region:
     def boxes(self) -> Floats:
         """The box of each piece, a row each."""
         return np.array([piece.box for piece in self.pieces]).reshape(-1, 4)
+
+    @cached_property
+    def box(self) -> Bounds:
+        return union_bounds(all_bounds(piece for face in self.faces for piece in face.outer.pieces))
+
+    @property
+    def area(self) -> float:
+        return sum(loop.area for loop in self.loops)
+
+    @property
+    def perimeter(self) -> float:
+        return sum(map(length, self.pieces))
+
+    def polygons(self, tolerance: float) -> list[Polygon]:
+        """Returns one polygon for each of its loops: outer ones counter-clockwise, holes clockwise."""
+        return [polygon for face in self.faces for polygon in face.polygons(tolerance)]
 
     def mapped(self, moved: Callable[[Piece], Piece]) -> Region:
         return Region(tuple(face.mapped(moved) for face in self.faces))
@@ -126,41 +173,11 @@ def measure(region: Region) -> Measures:
     """Returns all measures of a region."""
     area = mx = my = perimeter = 0.0
     for loop in region.loops:
-        (x0, y0), (a, x, y) = moments_about_start(loop)
+        (x0, y0), (a, x, y) = loop.start, loop.moments
         area, mx, my = area + a, mx + (x + a * x0), my + (y + a * y0)
         perimeter += sum(length(piece) for piece in loop.pieces)
     centroid = (mx / area, my / area) if area else (0.0, 0.0)
-    return Measures(area, perimeter, centroid, region_bounds(region), len(region.loops))
-
-
-def region_bounds(region: Region) -> Bounds:
-    return union_bounds(all_bounds(piece for face in region.faces for piece in face.outer.pieces))
-
-
-def area(region: Region) -> float:
-    return sum(loop_area(loop) for loop in region.loops)
-
-
-def perimeter(region: Region) -> float:
-    return sum(length(piece) for loop in region.loops for piece in loop.pieces)
-
-
-def loop_area(loop: Loop) -> float:
-    """Returns the area of a loop, positive counter-clockwise."""
-    start = loop.pieces[0].ends[0]
-    pieces = loop.pieces
-    area = sum(_bezier_area(p, start) if isinstance(p, Bezier) else _moments(p, start)[0] for p in pieces)
-    return -area if loop.reversed else area
-
-
-def moments_about_start(loop: Loop) -> tuple[Vec, Moments]:
-    """Returns the start of a loop and its moments about it: far from the origin nothing cancels there."""
-    start = loop.pieces[0].ends[0]
-    a = mx = my = 0.0
-    for da, dx, dy in (_moments(piece, start) for piece in loop.pieces):
-        a, mx, my = a + da, mx + dx, my + dy
-    sign = -1 if loop.reversed else 1
-    return start, (sign * a, sign * mx, sign * my)
+    return Measures(area, perimeter, centroid, region.box, len(region.loops))
 
 
 def _moments(piece: Piece, origin: Vec) -> Moments:
@@ -267,34 +284,16 @@ SLACK = 1e-9
 _FINER, _ROUNDS = 16, 4
 
 
-def region_polygons(region: Region, tolerance: float) -> list[Polygon]:
-    """Returns one polygon for each loop of `region.loops`: outer ones counter-clockwise, holes clockwise."""
-    return [polygon for face in region.faces for polygon in face_polygons(face, tolerance)]
-
-
-def face_polygons(face: Face, tolerance: float) -> list[Polygon]:
-    """Returns the outer polygon, counter-clockwise, then those of the holes, clockwise."""
-    return [_faithful(loop, tolerance) for loop in face.loops]
-
-
 def _faithful(loop: Loop, tolerance: float) -> Polygon:
     """Returns a loop's polygon, which follows a thin loop closely enough not to turn inside out."""
     checkpoint()
-    exact = loop_area(loop)
+    exact = loop.area
     for _ in range(_ROUNDS):
-        polygon = loop_points(loop, tolerance)
+        polygon = loop.polygon(tolerance)
         if polygon_area(polygon) * exact > exact * exact / 2:
             break
         tolerance /= _FINER
     return polygon
-
-
-def loop_points(loop: Loop, tolerance: float) -> Polygon:
-    """Returns the polygon of a loop in its own direction (`tolerance` in mm, above 0)."""
-    if not tolerance > 0:
-        raise ValueError(f"the tolerance must be above 0, not {tolerance}")
-    polygon = np.concatenate([_from_start(piece, tolerance) for piece in loop.pieces])
-    return polygon[::-1] if loop.reversed else polygon
 
 
 def piece_points(piece: Piece, tolerance: float) -> Polygon:

@@ -16,8 +16,8 @@ from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
 from aidl_lang.geometry.curves import TAU, Arc, Circle, Floats, Ints, Line, Mask, Piece, Vec, union_bounds
 from aidl_lang.geometry.nearness import inside
-from aidl_lang.geometry.network import NODE, RELATIVE_TOLERANCE, UNKNOWN, Edge, Network
-from aidl_lang.geometry.region import Face, Loop, Polygon, Region, length, loop_area, polygon_area
+from aidl_lang.geometry.network import NODE, RELATIVE_TOLERANCE, UNKNOWN, Edge, Network, with_finer_chords
+from aidl_lang.geometry.region import Face, Loop, Polygon, Region, length, polygon_area
 from aidl_lang.solver.linear import each_once
 
 # --- A thin layer over Manifold's plane booleans, on polygons in grid units (see `network`).
@@ -226,9 +226,14 @@ def trace_all(network: Network, sections: Sequence[Section]) -> list[Traced]:
             numbers = range(number, number + len(face))
             traced += faces_of([loop for k in numbers for loop in _loops(network, sides, k, used)])
             number += len(face)
-        traced.sort(key=lambda face: first_point(face.outer))
+        traced.sort(key=lambda face: face.outer.start)
         result.append(Traced(Region(tuple(traced)), frozenset(used)))
     return result
+
+
+def arranged(curves: Sequence[Piece], area: Callable[[Network], Section]) -> Region:
+    """Returns the region of an area that is put together from the network of some curves."""
+    return with_finer_chords(Network(curves), lambda network: trace(network, area(network)).region)
 
 
 def _components(section: Section) -> list[list[Polygon]]:
@@ -246,7 +251,9 @@ def faces_of(loops: list[tuple[float, Loop]]) -> list[Face]:
     holes: list[list[Loop]] = [[] for _ in outers]
     for hole, holder in zip(inner, _holders(outers, inner), strict=True):
         holes[holder].append(hole)
-    return [Face(o, tuple(sorted(h, key=first_point))) for o, h in zip(outers, holes, strict=True)]
+    return [
+        Face(o, tuple(sorted(h, key=lambda hole: hole.start))) for o, h in zip(outers, holes, strict=True)
+    ]
 
 
 def _holders(outers: list[Loop], holes: list[Loop]) -> list[int]:
@@ -264,11 +271,6 @@ def _holders(outers: list[Loop], holes: list[Loop]) -> list[int]:
             polygon = np.concatenate([piece.points(ts)[:-1] for piece in outer.pieces])
             holder[seekers[inside([polygon], spots[seekers])]] = number
     return [int(k) for k in holder]
-
-
-def first_point(loop: Loop) -> Vec:
-    """Returns where a loop begins, by which loops and faces are in order."""
-    return loop.pieces[0].ends[0]
 
 
 def _sides(network: Network, polygons: list[Floats]) -> Sides:
@@ -335,7 +337,7 @@ def _loops(network: Network, sides: Sides, number: int, used: set[int]) -> list[
     result = []
     for simple in _split_at_pinches(_snapped(runs, network.tolerance)):
         loop = _to_loop(network, joined(simple, lambda a, b: _continue(network, a, b)))
-        area = loop_area(loop)
+        area = loop.area
         if abs(area) > network.tolerance * sum(map(length, loop.pieces)) / 2:
             result.append((area, loop))
     return result

@@ -19,7 +19,7 @@ from aidl_lang.common.running import checkpoint
 from aidl_lang.geometry.curves import Bounds
 from aidl_lang.geometry.drawing import Drawing, Stroke
 from aidl_lang.geometry.parts import Motion, Part, Size, drawn, gathered, parts_of, upright_turn
-from aidl_lang.geometry.region import COARSE, Polygon, face_polygons, polygon_area
+from aidl_lang.geometry.region import COARSE, Polygon, polygon_area
 from aidl_lang.geometry.sections import widened
 from aidl_lang.geometry.solved import SolvedStructure
 
@@ -270,7 +270,7 @@ def _outline(part: Part) -> Polygon:
     """Returns the outline of a part; its box, if it is in pieces or has engraving beyond its material."""
     faces = part.body.region.faces
     if len(faces) == 1 and part.box == part.body.box:
-        return face_polygons(faces[0], COARSE)[0]
+        return faces[0].polygons(COARSE)[0]
     left, bottom, right, top = part.box
     return np.array([(left, bottom), (right, bottom), (right, top), (left, top)])
 

@@ -17,7 +17,7 @@ from aidl_lang.common.running import checkpoint
 from aidl_lang.geometry.boolean import Contact, region_distance
 from aidl_lang.geometry.curves import Bezier, Bounds, Circle, Ellipse, Line, Piece, Vec
 from aidl_lang.geometry.drawing import Body, Drawing, region_alone
-from aidl_lang.geometry.region import Region, measure, moments_about_start
+from aidl_lang.geometry.region import Region, measure
 from aidl_lang.geometry.solved import SolvedModel
 from aidl_lang.geometry.walls import widths
 
@@ -72,7 +72,7 @@ def inertia(region: Region, centroid: Vec) -> Inertia:
     xx = yy = xy = 0.0
     for loop in region.loops:
         sign = -1 if loop.reversed else 1
-        start, (a, mx, my) = moments_about_start(loop)
+        start, (a, mx, my) = loop.start, loop.moments
         dx, dy = start[0] - centroid[0], start[1] - centroid[1]
         sx, sy, sxy = map(math.fsum, zip(*(_piece_squares(p, start) for p in loop.pieces), strict=True))
         # The parallel axis theorem, from the start of the loop to the centroid.

@@ -35,7 +35,7 @@ from aidl_lang.geometry.curves import (
 from aidl_lang.geometry.nearness import Sides, inside
 from aidl_lang.geometry.network import CHORD, RELATIVE_TOLERANCE
 from aidl_lang.geometry.offsets import thick
-from aidl_lang.geometry.region import Region, area, region_bounds, region_polygons
+from aidl_lang.geometry.region import Region
 
 MOST = 10_000
 """Copies of a cell that are made at most."""
@@ -167,7 +167,7 @@ class Lattice:
 
 def tiled_strokes(cell: Sequence[Piece], region: Region, lattice: Lattice, *, whole: bool) -> list[Piece]:
     """Returns the strokes of all copies that lie inside; with `whole` of those that lie inside wholly."""
-    single, running = _told_apart(cell, lattice, region_bounds(region)) if not whole else (cell, [])
+    single, running = _told_apart(cell, lattice, region.box) if not whole else (cell, [])
     pieces = [p for one in clipped_each(running, region) for p in one.inner]
     if not single:
         return pieces
@@ -197,7 +197,7 @@ def tiled_areas(cell: Region, region: Region, lattice: Lattice, *, whole: bool) 
 
 def tiled_bars(cell: Sequence[Piece], region: Region, lattice: Lattice, width: float) -> Region:
     """Returns what lies inside of all copies of strokes drawn with a pen of a width."""
-    left, bottom, right, top = region_bounds(region)
+    left, bottom, right, top = region.box
     box = left - width, bottom - width, right + width, top + width
     single, strokes = _told_apart(cell, lattice, box)
     if single:
@@ -232,12 +232,12 @@ def _told_apart(cell: Sequence[Piece], lattice: Lattice, box: Bounds) -> tuple[l
 
 def _sorted(cell: Sequence[Piece], region: Region, lattice: Lattice) -> tuple[list[Vec], list[Vec]]:
     """Returns the ways of the copies that lie wholly inside, and of those that the border may cut."""
-    ways = lattice.ways(*_reach(cell, region_bounds(region)))
+    ways = lattice.ways(*_reach(cell, region.box))
     left, bottom, right, top = union_bounds([c.box for c in cell])
     radius = math.hypot(right - left, top - bottom) / 2
     spots = np.array(ways).reshape(-1, 2) + np.array(((left + right) / 2, (bottom + top) / 2))
     size = float(np.ptp(region.boxes.reshape(-1, 2), axis=0).max())
-    polygons = region_polygons(region, CHORD * size)
+    polygons = region.polygons(CHORD * size)
     sides = Sides(np.concatenate([np.concatenate((p, np.roll(p, -1, axis=0)), axis=1) for p in polygons]))
     crossing = np.zeros(len(spots), dtype=np.bool_)
     for begin in range(0, len(spots), _AT_ONCE):
@@ -255,7 +255,7 @@ def _reach(cell: Sequence[Piece], box: Bounds) -> tuple[Floats, Floats]:
 
 def _meet_each_other(cell: Region, lattice: Lattice) -> bool:
     """Tells whether copies of an area touch or overlap."""
-    left, bottom, right, top = region_bounds(cell)
+    left, bottom, right, top = cell.box
     near = RELATIVE_TOLERANCE * larger_side((left, bottom, right, top))
     row = lattice.row or (0.0, 0.0)
     for j in range(_NEXT + 1 if lattice.row is not None else 1):
@@ -274,7 +274,7 @@ def _uncut(areas: Sequence[Region], region: Region) -> list[Region]:
     kept = [r for r, pieces in zip(areas, found, strict=True) if all(one.is_whole for one in pieces)]
     if not any(face.holes for face in region.faces):
         return kept
-    return [r for r in kept if abs(area(within(region, [r])) - area(r)) <= RELATIVE_TOLERANCE * area(r)]
+    return [r for r in kept if abs(within(region, [r]).area - r.area) <= RELATIVE_TOLERANCE * r.area]
 
 
 def _moved(curve: Piece, way: Vec) -> Piece:

@@ -11,7 +11,7 @@ from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.source import SourceFile
 from aidl_lang.common.world import MemoryWorld
 from aidl_lang.geometry.curves import Arc, Bezier, Circle, Line
-from aidl_lang.geometry.region import Region, area
+from aidl_lang.geometry.region import Region
 from aidl_lang.pipeline import Compiled
 
 WEDGE = """\
@@ -111,4 +111,4 @@ def test_overshooting_ends_are_trimmed_without_a_word():
         """
     )
     assert not notes(result)
-    assert area(region(result, "s")) == pytest.approx(400, abs=1e-2)
+    assert region(result, "s").area == pytest.approx(400, abs=1e-2)

@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, Line, Piece, Vec, inward, union_bounds
 from aidl_lang.geometry.finishing import Work, corners_of, direction, finish, fitted, sized
 from aidl_lang.geometry.offsets import hull, offset, thick
-from aidl_lang.geometry.region import Face, Loop, Region, area, length, perimeter
+from aidl_lang.geometry.region import Face, Loop, Region, length
 from tests.amount import tries
 from tests.geometry.models import arc
 from tests.geometry.test_regions import assert_closed, pieces
@@ -119,11 +119,11 @@ def test_offset_of_polygons_against_shapely(corners: list[Vec], distance: float,
         offset(polygon(corners), d, sharp=False),
         shapely.Polygon(corners).buffer(d, quad_segs=FINE),
     )
-    assert area(ours) == pytest.approx(theirs.area, abs=0.02)
+    assert ours.area == pytest.approx(theirs.area, abs=0.02)
     # Parts that just touch, or just do not, are told apart by less than the error of a circle of chords.
     near = [shapely.Polygon(corners).buffer(d + by, quad_segs=FINE) for by in (-2e-3, 0.0, 2e-3)]
     counts = [len(shapely.get_parts(each)) for each in near]
-    assert len(ours.faces) in counts or abs(theirs.area - area(ours)) < 1e-3
+    assert len(ours.faces) in counts or abs(theirs.area - ours.area) < 1e-3
     assert_closed(ours)
     assert all(isinstance(p, Line | Arc | Circle) for loop in ours.loops for p in loop.pieces)
 
@@ -134,10 +134,10 @@ def test_offset_of_a_convex_polygon_has_its_closed_form(a: float, b: float, d: f
     triangle = polygon([(0, 0), (a, 0), (0, b)])
     c = math.hypot(a, b)
     grown = offset(triangle, d, sharp=False)
-    assert area(grown) == pytest.approx(a * b / 2 + (a + b + c) * d + math.pi * d * d)
-    assert perimeter(grown) == pytest.approx(a + b + c + 2 * math.pi * d)
+    assert grown.area == pytest.approx(a * b / 2 + (a + b + c) * d + math.pi * d * d)
+    assert grown.perimeter == pytest.approx(a + b + c + 2 * math.pi * d)
     inradius = a * b / (a + b + c)
-    assert area(offset(triangle, d)) == pytest.approx(a * b / 2 * ((inradius + d) / inradius) ** 2)
+    assert offset(triangle, d).area == pytest.approx(a * b / 2 * ((inradius + d) / inradius) ** 2)
 
 
 @pytest.mark.parametrize(
@@ -151,7 +151,7 @@ def test_offset_of_an_ellipse_keeps_its_distance(d: float) -> None:
     for p in (q for loop in ours.loops for piece in loop.pieces for q in piece.points(np.linspace(0, 1, 41))):
         assert outline.distance(shapely.Point(p)) == pytest.approx(abs(d), abs=1e-3)
     theirs = shapely.Polygon(outline).buffer(d, quad_segs=FINE)
-    assert area(ours) == pytest.approx(theirs.area, rel=2e-5, abs=0.01)
+    assert ours.area == pytest.approx(theirs.area, rel=2e-5, abs=0.01)
 
 
 @tries(40)
@@ -188,16 +188,16 @@ def test_strokes_against_shapely(way: list[Vec], width: float, caps: str) -> Non
         width / 2, quad_segs=FINE, cap_style={"butt": "flat"}.get(caps, caps)
     )
     ours = thick(lines, width, caps)
-    assert area(ours) == pytest.approx(theirs.area, abs=0.02)
+    assert ours.area == pytest.approx(theirs.area, abs=0.02)
     assert_closed(ours)
 
 
 def test_stroke_of_an_arc_wider_than_its_radius() -> None:
     """Without caps it is half a disc of radius 5."""
     bow = [arc((0, 0), 2, 0, 180)]
-    assert area(thick(bow, 6, "butt")) == pytest.approx(math.pi * 25 / 2)
+    assert thick(bow, 6, "butt").area == pytest.approx(math.pi * 25 / 2)
     theirs = shapely.LineString(bow[0].points(np.linspace(0, 1, 4001))).buffer(3, quad_segs=FINE)
-    assert area(thick(bow, 6)) == pytest.approx(theirs.area, rel=1e-4)
+    assert thick(bow, 6).area == pytest.approx(theirs.area, rel=1e-4)
 
 
 @pytest.mark.parametrize(
@@ -238,7 +238,7 @@ def test_hulls_against_shapely(drawn: list[Piece]) -> None:
     spots = np.concatenate([c.points(np.linspace(0, 1, n)) for c, n in zip(drawn, counts, strict=True)])
     theirs = shapely.convex_hull(shapely.MultiPoint(np.unique(np.round(spots, 5), axis=0)))
     ours = hull(drawn)
-    assert area(ours) == pytest.approx(theirs.area, rel=1e-4, abs=5e-3)
+    assert ours.area == pytest.approx(theirs.area, rel=1e-4, abs=5e-3)
     assert_closed(ours)
 
 
@@ -248,7 +248,7 @@ def test_hull_of_two_circles_has_its_closed_form(a: float, b: float, d: float) -
     ours = hull([Circle((0, 0), a), Circle((d, 0), b)])
     tangent, lean = math.sqrt(d * d - (a - b) ** 2), math.asin((a - b) / d)
     expected = (a + b) * tangent + a * a * (math.pi / 2 + lean) + b * b * (math.pi / 2 - lean)
-    assert area(ours) == pytest.approx(expected, rel=1e-12)
+    assert ours.area == pytest.approx(expected, rel=1e-12)
     assert len(pieces(ours, Arc)) == 2
 
 

@@ -14,7 +14,6 @@ from shapely.geometry import Polygon, box
 from aidl_lang.geometry import sheets
 from aidl_lang.geometry.curves import Circle, Line, Piece
 from aidl_lang.geometry.drawing import Body, Drawing, draw
-from aidl_lang.geometry.region import area, face_polygons
 from aidl_lang.geometry.sheets import Layout
 from aidl_lang.geometry.solved import SolvedStructure
 from tests.amount import tries
@@ -39,7 +38,7 @@ def laid_out(
 def shape(body: Body) -> Polygon:
     """Close to the body: its vertices lie on the outline."""
     (face,) = body.region.faces
-    outer, *holes = face_polygons(face, 1e-3)
+    outer, *holes = face.polygons(1e-3)
     return Polygon(outer, holes)
 
 
@@ -83,7 +82,7 @@ def check(drawing: Drawing, layout: Layout, sheet: tuple[float, float], spacing:
             assert list(map(type, old)) == list(map(type, new))
             factor, _ = motion(numbers(old), numbers(new))
             assert min(abs(factor - 1j**k) for k in range(4)) < 1e-9  # turned by quarters; no mirror
-            assert area(body.region) == pytest.approx(area(before[body.path].region), rel=1e-12)
+            assert body.region.area == pytest.approx(before[body.path].region.area, rel=1e-12)
 
 
 @st.composite

@@ -9,16 +9,7 @@ import pytest
 import shapely
 
 from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, Line, Piece
-from aidl_lang.geometry.region import (
-    Face,
-    Loop,
-    Region,
-    area,
-    loop_points,
-    piece_points,
-    polygon_area,
-    region_polygons,
-)
+from aidl_lang.geometry.region import Face, Loop, Region, piece_points, polygon_area
 from tests.geometry.models import arc
 
 WHOLE = Ellipse((1, 2), 30, 2, 0.4)
@@ -59,7 +50,7 @@ def region(x: float) -> Region:
 def test_the_area_converges():
     """Cut by chords of n per turn, areas are short by a share that falls with n², as the tolerance does."""
     for x in (0.0, 1e7):
-        exact = area(region(x))
+        exact = region(x).area
         errors = [abs(_area(region(x), tolerance) - exact) for tolerance in (1e-1, 1e-2, 1e-3)]
         assert errors[0] < exact * 0.03
         assert errors[1] < errors[0] / 5
@@ -67,7 +58,7 @@ def test_the_area_converges():
 
 
 def _area(r: Region, tolerance: float) -> float:
-    return sum(map(polygon_area, region_polygons(r, tolerance)))
+    return sum(map(polygon_area, r.polygons(tolerance)))
 
 
 def test_a_sliver_thinner_than_the_tolerance_does_not_turn_inside_out():
@@ -83,13 +74,13 @@ def test_a_sliver_thinner_than_the_tolerance_does_not_turn_inside_out():
         )
 
     face = Face(Loop((bow(3.002, True), bow(3.0, False))))
-    exact = area(Region((face,)))
+    exact = Region((face,)).area
     assert exact == pytest.approx(2 / 3 * 20 * 0.002, rel=0.1)
-    (polygon,) = region_polygons(Region((face,)), 1.0)
+    (polygon,) = Region((face,)).polygons(1.0)
     assert polygon_area(polygon) > exact / 2
 
 
 @pytest.mark.parametrize("tolerance", [0.0, -1.0, math.nan])
 def test_a_tolerance_is_above_0(tolerance: float):
     with pytest.raises(ValueError, match="above 0"):
-        loop_points(Loop((Circle((0, 0), 1),)), tolerance)
+        Loop((Circle((0, 0), 1),)).polygon(tolerance)

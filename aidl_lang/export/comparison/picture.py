@@ -28,7 +28,7 @@ from aidl_lang.export.marks import (
 from aidl_lang.geometry.curves import Bounds, Line, Piece, Vec, larger_side, union_bounds
 from aidl_lang.geometry.drawing import Stroke
 from aidl_lang.geometry.network import Network, with_finer_chords
-from aidl_lang.geometry.region import Face, Region, area, face_polygons, measure
+from aidl_lang.geometry.region import Face, Region, measure
 from aidl_lang.geometry.sections import difference, filled, intersection, trace_all, union
 
 FILLS = {"both": "#cfd4db", "before": "#fbe3c0", "after": "#6db6e8"}
@@ -97,7 +97,7 @@ def _filled(name: str, region: Region, size: float) -> Iterator[Mark]:
 def _hatch(face: Face, step: float) -> list[Piece]:
     """Returns lines at 45° inside a face, at the same places in every face."""
     turn = np.array([[1.0, 1.0], [-1.0, 1.0]]) / math.sqrt(2)
-    polygons = [polygon @ turn.T for polygon in face_polygons(face, step / 50)]
+    polygons = [polygon @ turn.T for polygon in face.polygons(step / 50)]
     start = np.concatenate(polygons)
     end = np.concatenate([np.roll(polygon, -1, axis=0) for polygon in polygons])
     lines: list[Piece] = []
@@ -183,7 +183,7 @@ def _legend(regions: dict[str, Region], box: Bounds, size: float) -> tuple[tuple
         marks += _filled(name, Region((swatch,)), size)
         marks.append(Area(swatch, None, _ink(name, size)))
         label = Text(
-            (left + 2.6 * text, top - 0.85 * text), f"{NAMES[name]}: {area(region):.5g} mm²", text, INKS[name]
+            (left + 2.6 * text, top - 0.85 * text), f"{NAMES[name]}: {region.area:.5g} mm²", text, INKS[name]
         )
         marks.append(label)
         top -= 1.6 * text

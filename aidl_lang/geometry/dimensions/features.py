@@ -19,7 +19,7 @@ from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
 from aidl_lang.geometry.curves import Arc, Circle, Ellipse, EllipseArc, Line, Piece, Vec
 from aidl_lang.geometry.nearness import inside
-from aidl_lang.geometry.region import Region, region_bounds, region_polygons
+from aidl_lang.geometry.region import Region
 from aidl_lang.geometry.solved import (
     Dimension,
     Length,
@@ -51,10 +51,10 @@ class _Inside:
     """The region that a structure is clipped to."""
 
     def __init__(self, region: Region) -> None:
-        left, bottom, right, top = region_bounds(region) if region else (0.0, 0.0, 0.0, 0.0)
+        left, bottom, right, top = region.box if region else (0.0, 0.0, 0.0, 0.0)
         size = max(right - left, top - bottom)
         self._region, self._near = region, _NEAR * size
-        self._polygons = region_polygons(region, _CHORD * size) if region else []
+        self._polygons = region.polygons(_CHORD * size) if region else []
 
     def shows(self, dimension: Dimension) -> bool:
         return all(self._has_one(spots) for spots in _ends(dimension))

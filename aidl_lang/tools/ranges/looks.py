@@ -25,7 +25,6 @@ from aidl_lang.common.records import record
 from aidl_lang.compiled import Compiled
 from aidl_lang.geometry.curves import Arc, Bounds, Line, Piece, all_bounds, union_bounds
 from aidl_lang.geometry.drawing import Drawing
-from aidl_lang.geometry.region import region_polygons
 from aidl_lang.geometry.sections import Section, fill, intersection
 from aidl_lang.geometry.solved import SolvedGeometry, SolvedModel, SolvedStructure
 from aidl_lang.tools.ends import Place, clause
@@ -201,7 +200,7 @@ def _see_contacts(found: Look, model: SolvedModel, drawing: Drawing) -> None:
 
     @cache
     def section(path: str) -> Section:
-        return fill(region_polygons(regions[path], _TOUCHING * drawing.size), "EvenOdd")
+        return fill(regions[path].polygons(_TOUCHING * drawing.size), "EvenOdd")
 
     def is_overlap(a: str, b: str) -> bool:
         common = intersection(section(a), section(b))
