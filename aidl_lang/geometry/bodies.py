@@ -15,20 +15,7 @@ from aidl_lang.geometry.curves import TAU, Arc, Bezier, Line, Piece, Vec, larger
 from aidl_lang.geometry.faces import OwnFace, OwnFaces, Shape, own_faces, union_of
 from aidl_lang.geometry.nearness import near_pairs
 from aidl_lang.geometry.network import Network
-from aidl_lang.geometry.sections import (
-    Section,
-    Traced,
-    box_within,
-    boxes_meet,
-    covers,
-    difference,
-    holes_of,
-    inside_mask,
-    intersection,
-    is_nothing,
-    trace_all,
-    union,
-)
+from aidl_lang.geometry.sections import Section, Traced, trace_all, union
 from aidl_lang.geometry.solved import SolvedGeometry, SolvedStructure, as_geometry
 
 # --- What structures are clipped to, in the network of curves: solids and holes lie inside of it.
@@ -229,7 +216,7 @@ class Bodies:
         inner = [self.cut(c) for c in hole.structures if c.kind == "hole"]
         islands = [m for c in hole.structures if c.kind != "hole" for m in self.masses(c)]
         taken = union([c.section for c in inner])
-        islands = [replace(m, section=difference(m.section, taken)) for m in islands]
+        islands = [replace(m, section=m.section - taken) for m in islands]
         islands += [m for c in inner for m in c.islands]
         holes = ([] if own is None else [Void(hole, own)]) + [v for c in inner for v in c.holes]
         if holes:
@@ -261,32 +248,32 @@ class Bodies:
         """Returns the faces of a structure as far as they lie in what it is clipped to."""
         if (clip := self.clips.get(structure.path)) is None:
             return faces
-        inner = [replace(face, section=intersection(face.section, clip)) for face in faces]
-        return [face for face in inner if not is_nothing(face.section)]
+        inner = [replace(face, section=face.section & clip) for face in faces]
+        return [face for face in inner if not face.section.is_nothing]
 
     def inner_pieces(self, structure: SolvedStructure, number: int) -> tuple[Piece, ...]:
         """Returns a curve of a structure as far as it lies in what the structure is clipped to."""
         if (clip := self.clips.get(structure.path)) is None:
             return (self.network.curves[number],)
         uses = self.network.uses[number]
-        within = inside_mask(clip, self.network.midpoints([edge for edge, _ in uses])) if uses else ()
+        within = clip.mask(self.network.midpoints([edge for edge, _ in uses])) if uses else ()
         return tuple(self.network.piece(use) for use, is_in in zip(uses, within, strict=True) if is_in)
 
     def _find_inner_loops(self, structure: SolvedStructure, faces: list[OwnFace]) -> None:
         """Faces that the others cover; of two alike the later one."""
         beside: list[list[int]] = [[] for _ in faces]
-        for i, j in near_pairs([face.section.bounds() for face in faces], 0.0):
+        for i, j in near_pairs([face.section.box for face in faces], 0.0):
             beside[i].append(j)
             beside[j].append(i)
         dropped: set[int] = set()
         for number in reversed(range(len(faces))):
             face = faces[number]
             near = [faces[i] for i in sorted(beside[number]) if i not in dropped]
-            near = [f for f in near if boxes_meet(face.section, f.section)]
-            around = [f for f in near if box_within(face.section, f.section)]
+            near = [f for f in near if face.section.may_meet(f.section)]
+            around = [f for f in near if face.section.is_boxed_by(f.section)]
             if not near or not (around or len(near) > 1):
                 continue
-            if covers(union_of(near), face.section):
+            if union_of(near).covers(face.section):
                 dropped.add(number)
                 names = tuple(g for f in around or near for g in f.geometries)
                 self.findings.append(InnerLoop(structure, face, names))
@@ -300,11 +287,11 @@ class Bodies:
         if not others or face.section.num_contour() == 1:
             return
         rest, covered, by = union_of(others), 0, dict[str, SolvedGeometry]()
-        for hole in holes_of(face.section):
-            if covers(rest, hole):
+        for hole in face.section.holes():
+            if rest.covers(hole):
                 covered += 1
-                near = [f for f in others if boxes_meet(f.section, hole)]
-                alone = next((f for f in near if covers(f.section, hole)), None)
+                near = [f for f in others if f.section.may_meet(hole)]
+                alone = next((f for f in near if f.section.covers(hole)), None)
                 by.update((g.path, g) for f in ([alone] if alone else near) for g in f.geometries)
         if covered:
             self.findings.append(CoveredHoles(structure, face, covered, tuple(by.values())))
@@ -315,14 +302,14 @@ class Bodies:
         islands = [island for c in cuts for island in c.islands]
         before = union([*([] if own is None else [own]), *(m.section for m in children)])
         taken = union([c.section for c in cuts])
-        after = difference(before, taken)
+        after = before - taken
         after = union([after, *(m.section for m in islands)]) if islands else after
         kept = self._voids(solid, before, cuts, taken)
         if islands:
             kept = self._still_open(solid, kept, after, islands)
         for m in children:
             kept += self._still_open(solid, m.voids, after, children)
-        if after.is_empty():
+        if after.is_empty:
             return []
         self.sections[solid.path] = after
         for m in (*children, *islands):
@@ -338,9 +325,9 @@ class Bodies:
         if cuts:
             taken = union([c.section for c in cuts])
             self._voids(structure, union([m.section for m in masses]), cuts, taken)
-            masses = [replace(m, section=difference(m.section, taken)) for m in masses]
+            masses = [replace(m, section=m.section - taken) for m in masses]
             masses += [island for c in cuts for island in c.islands]
-        return [m for m in masses if not m.section.is_empty()]
+        return [m for m in masses if not m.section.is_empty]
 
     def _voids(
         self, holder: SolvedStructure, material: Section, cuts: Sequence[Cut], taken: Section
@@ -350,10 +337,10 @@ class Bodies:
         near = _around(material, [hole.section for cut in cuts for hole in cut.holes], taken)
         for cut in cuts:
             for hole in cut.holes:
-                removed = intersection(next(near), hole.section)
-                if not is_nothing(removed):
+                removed = next(near) & hole.section
+                if not removed.is_nothing:
                     voids.append(Void(hole.hole, removed))
-                elif all(is_nothing(intersection(m.section, hole.section)) for m in cut.islands):
+                elif not any(m.section.overlaps(hole.section) for m in cut.islands):
                     self.findings.append(IdleHole(hole.hole, holder))
         return voids
 
@@ -364,13 +351,13 @@ class Bodies:
 
         What a void was cut from does not cover it, so it may be among the others.
         """
-        if not voids or is_nothing(intersection(material, union([v.section for v in voids]))):
+        if not voids or not material.overlaps(union([v.section for v in voids])):
             return list(voids)
         kept = []
         for void in voids:
-            if covers(material, void.section):
-                near = (m for m in others if boxes_meet(m.section, void.section))
-                filler = next((m.structure for m in near if covers(m.section, void.section)), None)
+            if material.covers(void.section):
+                near = (m for m in others if m.section.may_meet(void.section))
+                filler = next((m.structure for m in near if m.section.covers(void.section)), None)
                 self.findings.append(FilledHole(void.hole, holder, filler))
             else:
                 kept.append(void)
@@ -385,9 +372,9 @@ def _around(material: Section, holes: Sequence[Section], taken: Section) -> Iter
     if len(holes) < _FEW_HOLES or material.num_vert() < _FEW_VERTICES:
         yield from (material for _ in holes)
         return
-    parts = intersection(material, taken).decompose()
+    parts = (material & taken).decompose()
     beside: list[list[Section]] = [[] for _ in holes]
-    for i, j in near_pairs([s.bounds() for s in (*parts, *holes)], 0.0):
+    for i, j in near_pairs([s.box for s in (*parts, *holes)], 0.0):
         if i < len(parts) <= j:
             beside[j - len(parts)].append(parts[i])
     yield from map(union, beside)
@@ -403,7 +390,7 @@ def visible_seams(
     """Yields the edges of each united structure inside the body, by its path, each drawn once."""
     outline = traced[mass.structure.path].edges
     candidates = sorted({edge for path in mass.inner for edge in traced[path].edges} - outline)
-    mask = inside_mask(mass.section, network.midpoints(candidates))
+    mask = mass.section.mask(network.midpoints(candidates))
     left = {edge for edge, within in zip(candidates, mask, strict=True) if within}
     for path in mass.inner:
         edges = sorted(traced[path].edges & left)
@@ -432,7 +419,7 @@ def inner_seams(
         for section, outline in zip(reversed(own), reversed(outlines), strict=True):
             candidates = sorted(outline.edges - taken)
             spots = network.midpoints(candidates)
-            seen = inside_mask(mass.section, spots) & ~inside_mask(over, spots)
+            seen = mass.section.mask(spots) & ~over.mask(spots)
             found.update(edge for edge, is_seen in zip(candidates, seen, strict=True) if is_seen)
             taken.update(candidates)
             over = union([over, section])

@@ -35,11 +35,8 @@ from aidl_lang.geometry.sections import (
     Section,
     arranged,
     closed_loop,
-    difference,
     faces_of,
     filled,
-    intersection,
-    is_nothing,
     trace,
     union,
 )
@@ -185,17 +182,12 @@ def united(*regions: Region) -> Region:
 
 def without(a: Region, *others: Region) -> Region:
     """Returns the region `a` without the others."""
-    return _combined((a, *others), lambda base, *sections: difference(base, union(sections)))
+    return _combined((a, *others), lambda base, *sections: base - union(sections))
 
 
-def common(a: Region, b: Region) -> Region:
-    """Returns the intersection of two regions."""
-    return _combined((a, b), intersection)
-
-
-def within(cover: Region, regions: Sequence[Region]) -> Region:
-    """Returns what of some regions lies in a cover."""
-    return _combined((cover, *regions), lambda base, *sections: intersection(base, union(sections)))
+def common(a: Region, *others: Region) -> Region:
+    """Returns what of other regions lies in the region `a`."""
+    return _combined((a, *others), lambda base, *sections: base & union(sections))
 
 
 def overlap_area(a: Region, b: Region) -> float:
@@ -458,12 +450,12 @@ def contacts(network: Network, solids: Sequence[Solid]) -> Contacts:
 
 def _shared(network: Network, a: Solid, b: Solid, *, exactly: bool) -> float:
     """Returns the area that two bodies share; that of their polygons will do if it is no thin one."""
-    common = intersection(a.section, b.section)
-    if is_nothing(common):
+    common = a.section & b.section
+    if common.is_nothing:
         return 0.0
-    left, bottom, right, top = common.bounds()
+    left, bottom, right, top = common.box
     thin = _THIN * common.num_contour() * ((right - left) + (top - bottom))
-    return common.area() if common.area() > thin and not exactly else trace(network, common).region.area
+    return common.area if common.area > thin and not exactly else trace(network, common).region.area
 
 
 def _compare(network: Network, a: Solid, b: Solid) -> Contact:

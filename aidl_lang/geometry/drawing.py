@@ -56,18 +56,7 @@ from aidl_lang.geometry.notes import (
 )
 from aidl_lang.geometry.pieces import LETTERING, piece_notes
 from aidl_lang.geometry.region import Face, Measures, Region, measure
-from aidl_lang.geometry.sections import (
-    Section,
-    Traced,
-    boxes_meet,
-    difference,
-    fill,
-    intersection,
-    is_nothing,
-    trace,
-    trace_all,
-    union,
-)
+from aidl_lang.geometry.sections import Section, Traced, fill, trace, trace_all, union
 from aidl_lang.geometry.solved import Frame, SolvedGeometry, SolvedModel, SolvedStructure
 from aidl_lang.geometry.styles import (
     Style,
@@ -464,7 +453,7 @@ def _is_seen(
         return True
     place = max(order[g.path] for g in own)
     below = (area.whole for path, area in areas.items() if order[path] <= place)
-    return any(boxes_meet(a, b := found.face.section) and not is_nothing(intersection(a, b)) for a in below)
+    return any(area.overlaps(found.face.section) for area in below)
 
 
 def _unseen(
@@ -531,15 +520,15 @@ def _areas(
             else:
                 whole = union_of(own_faces(network, [shape]).faces)
                 if g.path in aside:
-                    whole = difference(whole, union([v.section for v in mass.voids] if mass else []))
+                    whole = whole - union([v.section for v in mass.voids] if mass else [])
                 else:
-                    whole = intersection(whole, mass.section if mass else union([]))
-                section = whole = intersection(whole, clip) if clip is not None else whole
+                    whole = whole & (mass.section if mass else union([]))
+                section = whole = whole & clip if clip is not None else whole
                 body = mass.structure.path if mass else ""
                 if later := [s for s in plain.get(body, ()) if order[s.geometry.path] > place]:
                     if (key := (body, len(later))) not in above:
                         above[key] = union_of(own_faces(network, later).faces)
-                    section = difference(section, above[key])  # in the colour of the body again
+                    section = section - above[key]  # in the colour of the body again
                 region = trace(network, section).region
             if region:
                 look = styled(styles[structure.path], g)

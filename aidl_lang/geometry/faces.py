@@ -25,16 +25,7 @@ from aidl_lang.geometry.curves import (
 )
 from aidl_lang.geometry.network import Joined, Network, Use, with_finer_chords
 from aidl_lang.geometry.region import Region, polygon_area
-from aidl_lang.geometry.sections import (
-    Section,
-    difference,
-    fill,
-    inside_mask,
-    intersection,
-    is_nothing,
-    trace,
-    union,
-)
+from aidl_lang.geometry.sections import Section, fill, trace, union
 from aidl_lang.geometry.solved import Scalar, SolvedGeometry, described
 
 if TYPE_CHECKING:
@@ -206,9 +197,9 @@ def _crossing(sections: Sequence[Section], nodes: Sequence[set[int]]) -> list[li
 def _cross(a: Section, b: Section) -> bool:
     """Tells whether two areas have something in common, and each something that the other has not."""
     checkpoint()
-    if is_nothing(intersection(a, b)):
+    if not a.overlaps(b):
         return False
-    return not is_nothing(difference(a, b)) and not is_nothing(difference(b, a))
+    return not (a - b).is_nothing and not (b - a).is_nothing
 
 
 # --- The faces that a structure draws itself.
@@ -261,7 +252,7 @@ def own_faces(network: Network, shapes: Sequence[Shape]) -> OwnFaces:
         if kept:
             section, crossed = _area(network, shape, kept)
             result.crossed += crossed
-            if is_nothing(section):  # flat, or twice the same outline
+            if section.is_nothing:  # flat, or twice the same outline
                 result.loose += shape.leaves
             else:
                 result.faces.append(OwnFace((shape.geometry,), section))
@@ -418,7 +409,7 @@ def _chain_free(
     for part in joined.groups(kept, lambda use: network.first(use)):
         polygons, bounding = _outlines(network, part)
         section = fill(polygons, "NonZero")
-        if not is_nothing(section):
+        if not section.is_nothing:
             names = tuple(g for g, number in free if _touches(network, number, bounding))
             result.faces.append(OwnFace(names, section))
             used |= bounding
@@ -435,12 +426,12 @@ def _close_with_outlines(
     uses = [use for _, number in rest for use in network.uses[number]]
     together, bounding = _outlines(network, _without_dangling(network, [*uses, *outlines]))
     hull, _ = _outlines(network, outlines)
-    added = difference(fill(together, "NonZero"), fill(hull, "NonZero"))
-    if is_nothing(added):
+    added = fill(together, "NonZero") - fill(hull, "NonZero")
+    if added.is_nothing:
         return set()
     boundary = trace(network, added).edges
     edges = [e for e in dict.fromkeys(e for e, _ in uses) if e in bounding]
-    within = inside_mask(added, network.midpoints(edges))
+    within = added.mask(network.midpoints(edges))
     used = {e for e, is_inside in zip(edges, within, strict=True) if is_inside or e in boundary}
     names = tuple(g for g, number in rest if _touches(network, number, used))
     if names:

@@ -27,15 +27,7 @@ from aidl_lang.geometry.network import GRID, Network, Use
 from aidl_lang.geometry.notes import at, local
 from aidl_lang.geometry.pieces import LETTERING
 from aidl_lang.geometry.region import Region, length
-from aidl_lang.geometry.sections import (
-    Section,
-    boxes_meet,
-    covers,
-    inside_mask,
-    intersection,
-    is_nothing,
-    union,
-)
+from aidl_lang.geometry.sections import Section, union
 from aidl_lang.geometry.solved import SolvedGeometry, SolvedStructure
 
 if TYPE_CHECKING:
@@ -111,10 +103,10 @@ class Ground:
     def hidden_part(self, faces: Section, place: float) -> tuple[float, list[str]]:
         """Returns the share of faces that later bodies cover, and these, but for inlays within the faces."""
         above = [b for b in self.bodies if b.place > place and not b.is_clear]
-        above = [b for b in above if boxes_meet(b.section, faces) and not covers(faces, b.section)]
-        by = [b.path for b in above if not is_nothing(intersection(b.section, faces))]
-        hidden = intersection(union([b.section for b in above]), faces) if by else None
-        return (hidden.area() / faces.area() if hidden is not None else 0.0), by
+        above = [b for b in above if b.section.may_meet(faces) and not faces.covers(b.section)]
+        by = [b.path for b in above if b.section.overlaps(faces)]
+        hidden = union([b.section for b in above]) & faces if by else None
+        return (hidden.area / faces.area if hidden is not None else 0.0), by
 
     @cached_property
     def _places(self) -> list[float]:
@@ -146,9 +138,9 @@ class Ground:
         order = np.argsort(on_grid[:, 0], kind="stable")
         along, found = on_grid[order, 0], [list[int]() for _ in spots]
         for k in bodies:
-            left, _, right, _ = self.bodies[k].section.bounds()
+            left, _, right, _ = self.bodies[k].section.box
             beside = order[np.searchsorted(along, left) : np.searchsorted(along, right, side="right")]
-            for n in beside[inside_mask(self.bodies[k].section, on_grid[beside])].tolist():
+            for n in beside[self.bodies[k].section.mask(on_grid[beside])].tolist():
                 found[n].append(k)
         return found
 

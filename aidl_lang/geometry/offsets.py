@@ -24,7 +24,7 @@ from aidl_lang.geometry.curves import (
 from aidl_lang.geometry.finishing import direction, parallel
 from aidl_lang.geometry.network import Network
 from aidl_lang.geometry.region import Face, Loop, Region
-from aidl_lang.geometry.sections import Section, arranged, difference, filled, union
+from aidl_lang.geometry.sections import Section, arranged, filled, union
 
 # --- The pieces that offsets are put together from: strips along curves, wedges at corners, caps at ends.
 #
@@ -249,7 +249,7 @@ def _combined(region: Region, strips: Sequence[Strip], *, cut: bool) -> Region:
             sections.append(filled(network, strip, place, "NonZero" if len(strip) == 1 else "EvenOdd"))
             place += sum(map(len, strip))
         base, added = filled(network, [loop.pieces for loop in region.loops], 0), union(sections)
-        return difference(base, added) if cut else union([base, added])
+        return base - added if cut else union([base, added])
 
     return arranged([*region.pieces, *strokes], area)
 

@@ -21,18 +21,7 @@ from aidl_lang.geometry.nearness import near_pairs
 from aidl_lang.geometry.network import Joined
 from aidl_lang.geometry.notes import marked_detached
 from aidl_lang.geometry.region import Region
-from aidl_lang.geometry.sections import (
-    Section,
-    boxes_meet,
-    covers,
-    difference,
-    holes_of,
-    intersection,
-    is_nothing,
-    trace,
-    trace_all,
-    union,
-)
+from aidl_lang.geometry.sections import Section, trace, trace_all, union
 from aidl_lang.geometry.solved import SolvedStructure
 
 _RING = 3
@@ -52,9 +41,7 @@ class _Piece:
     faces: tuple[OwnFace, ...]
 
     def meets(self, section: Section, region: Region) -> bool:
-        if boxes_meet(self.section, section) and not is_nothing(intersection(self.section, section)):
-            return True
-        return lie_within(self.region, region, UNNOTICED)
+        return self.section.overlaps(section) or lie_within(self.region, region, UNNOTICED)
 
 
 def piece_notes(
@@ -97,8 +84,8 @@ def _pieces(walk: Bodies, mass: Mass) -> list[_Piece]:
         return []  # one, or all alike
     of: list[list[OwnFace]] = [[] for _ in sections]
     count = len(sections)
-    for i, j in sorted(near_pairs([s.bounds() for s in (*sections, *(f.section for f in faces))], 0.0)):
-        if i < count <= j and not is_nothing(intersection(sections[i], faces[j - count].section)):
+    for i, j in sorted(near_pairs([s.box for s in (*sections, *(f.section for f in faces))], 0.0)):
+        if i < count <= j and sections[i].overlaps(faces[j - count].section):
             of[i].append(faces[j - count])
     traced = trace_all(walk.network, sections)
     return [
@@ -117,7 +104,7 @@ def _material(structure: SolvedStructure) -> Iterator[SolvedStructure]:
 
 def _area(section: Section) -> str:
     """Returns an area with six digits, so that pieces of one size compare equal."""
-    return f"{section.area():.6g}"
+    return f"{section.area:.6g}"
 
 
 def _groups(
@@ -141,7 +128,7 @@ def _groups(
         for face in piece.faces:
             joined.join(number, of.setdefault(id(face), number))
     groups = [[pieces[k] for k in group] for group in joined.groups(range(len(pieces)))]
-    return sorted(groups, key=lambda group: -sum(p.section.area() for p in group))
+    return sorted(groups, key=lambda group: -sum(p.section.area for p in group))
 
 
 def _notes(solid: SolvedStructure, groups: Sequence[Sequence[_Piece]]) -> Iterator[Diagnostic]:
@@ -195,7 +182,7 @@ def _cut_free(
         return
     loose: dict[str, tuple[SolvedStructure, list[Section], dict[str, None]]] = {}
     for piece, gap in _enclosed(mass.section.decompose()):
-        if not is_nothing(intersection(piece, islands)):
+        if piece.overlaps(islands):
             continue  # put there on purpose
         if _was_joined(walk, mass, piece, gap) and not _touches(walk, piece, others):
             for hole, around in _cutting(walk, holes, gap, piece):
@@ -215,11 +202,11 @@ def _severed(
     holes = [hole for hole in holes if hole.path in walk.sections]
     if not holes:
         return
-    pieces = sorted(mass.section.decompose(), key=lambda piece: -piece.area())
+    pieces = sorted(mass.section.decompose(), key=lambda piece: -piece.area)
     enclosed = {id(piece) for piece, _ in _enclosed(pieces)}
-    beside = [p for p in pieces if id(p) not in enclosed and is_nothing(intersection(p, islands))]
+    beside = [p for p in pieces if id(p) not in enclosed and not p.overlaps(islands)]
     for whole in union_of(_faces(walk, _material(mass.structure))).decompose():
-        parts = [piece for piece in beside if covers(whole, piece)]
+        parts = [piece for piece in beside if whole.covers(piece)]
         apart = [piece for piece in parts[1:] if not _touches(walk, piece, others)]
         # Those with which filled again pieces would hang together.
         filled = ((h, union([walk.sections[h.path], *parts])) for h in holes if apart)
@@ -284,12 +271,12 @@ def _enclosed(sections: Sequence[Section]) -> Iterator[tuple[Section, Section]]:
     """Yields the pieces that lie in openings of others, each with the smallest such opening."""
     if len(sections) < 2:
         return
-    openings = [hole for s in sections if s.num_contour() > 1 for hole in holes_of(s)]
+    openings = [hole for s in sections if s.num_contour() > 1 for hole in s.holes()]
     count, around = len(sections), dict[int, Section]()
-    for i, j in near_pairs([s.bounds() for s in (*sections, *openings)], 0.0):
-        if not i < count <= j or not covers(opening := openings[j - count], sections[i]):
+    for i, j in near_pairs([s.box for s in (*sections, *openings)], 0.0):
+        if not i < count <= j or not (opening := openings[j - count]).covers(sections[i]):
             continue
-        if i not in around or opening.area() < around[i].area():
+        if i not in around or opening.area < around[i].area:
             around[i] = opening
     yield from ((sections[i], around[i]) for i in sorted(around))
 
@@ -297,8 +284,8 @@ def _enclosed(sections: Sequence[Section]) -> Iterator[tuple[Section, Section]]:
 def _was_joined(walk: Bodies, mass: Mass, piece: Section, opening: Section) -> bool:
     """Tells whether a piece was part of the material around the opening before the cuts."""
     faces = (face.section for face in _faces(walk, _material(mass.structure)))
-    near = union([f for f in faces if boxes_meet(f, opening)])
-    return any(covers(whole, opening) and covers(whole, piece) for whole in near.decompose())
+    near = union([f for f in faces if f.may_meet(opening)])
+    return any(whole.covers(opening) and whole.covers(piece) for whole in near.decompose())
 
 
 def _touches(walk: Bodies, piece: Section, others: Sequence[Solid]) -> bool:
@@ -312,10 +299,9 @@ def _cutting(
     walk: Bodies, holes: Iterable[SolvedStructure], opening: Section, piece: Section
 ) -> Iterator[tuple[SolvedStructure, dict[str, None]]]:
     """Yields the holes that took what was around a piece, and the names of their geometries."""
-    between = difference(opening, piece)
+    between = opening - piece
     for hole in holes:
-        near = [f for f in walk.faces.get(hole.path, ()) if boxes_meet(f.section, between)]
-        faces = [f for f in near if not is_nothing(intersection(f.section, between))]
+        faces = [f for f in walk.faces.get(hole.path, ()) if f.section.overlaps(between)]
         if faces:
             yield hole, {g.name: None for f in faces for g in f.geometries}
 
@@ -328,7 +314,7 @@ def _fallen(
     around: Iterable[str],
 ) -> Diagnostic:
     """Returns the warning on pieces that a hole cuts free; `around`: the names of its geometries there."""
-    count, largest = len(pieces), max(pieces, key=lambda piece: piece.area())
+    count, largest = len(pieces), max(pieces, key=lambda piece: piece.area)
     left, bottom, right, top = trace(walk.network, largest).region.box
     size = f"{rough(right - left)} × {rough(top - bottom)} mm"
     cuts = [g for f in walk.faces[hole.path] for g in f.geometries]

@@ -8,13 +8,25 @@ from dataclasses import replace
 from functools import lru_cache
 from importlib import import_module
 from itertools import accumulate
-from typing import Any, Literal, Protocol, Self, TypeVar
+from typing import Any, Literal, TypeVar
 
 import numpy as np
 
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
-from aidl_lang.geometry.curves import TAU, Arc, Circle, Floats, Ints, Line, Mask, Piece, Vec, union_bounds
+from aidl_lang.geometry.curves import (
+    TAU,
+    Arc,
+    Bounds,
+    Circle,
+    Floats,
+    Ints,
+    Line,
+    Mask,
+    Piece,
+    Vec,
+    union_bounds,
+)
 from aidl_lang.geometry.nearness import inside
 from aidl_lang.geometry.network import NODE, RELATIVE_TOLERANCE, UNKNOWN, Edge, Network, with_finer_chords
 from aidl_lang.geometry.region import Face, Loop, Polygon, Region, length, polygon_area
@@ -30,18 +42,78 @@ _CORNERS = 32
 """Of the polygon that stands for a circle around a corner."""
 
 
-class Section(Protocol):
-    """The part of Manifold's `CrossSection` used here: an area of the plane bounded by polygons."""
+class Section:
+    """An area of the plane bounded by polygons: a `CrossSection` of Manifold, with its area and its box."""
 
-    def area(self) -> float: ...
-    def bounds(self) -> tuple[float, float, float, float]: ...
-    def is_empty(self) -> bool: ...
-    def num_contour(self) -> int: ...
-    def num_vert(self) -> int: ...
-    def decompose(self) -> list[Self]: ...
-    def to_polygons(self) -> list[Polygon]: ...
-    def __sub__(self, other: Self) -> Self: ...
-    def __xor__(self, other: Self) -> Self: ...
+    def __init__(self, shape: Any) -> None:
+        self._shape = shape
+        self.is_empty: bool = shape.is_empty()
+        self.area: float = shape.area()
+        self.box: Bounds = shape.bounds()
+
+    def num_contour(self) -> int:
+        return int(self._shape.num_contour())
+
+    def num_vert(self) -> int:
+        return int(self._shape.num_vert())
+
+    def to_polygons(self) -> list[Polygon]:
+        return list(self._shape.to_polygons())
+
+    def decompose(self) -> list[Section]:
+        """Returns its connected parts."""
+        return list(map(Section, self._shape.decompose()))
+
+    def holes(self) -> list[Section]:
+        """Returns the areas that its inner outlines enclose."""
+        whole = fill([p for p in self.to_polygons() if polygon_area(p) > 0], "NonZero")
+        return (whole - self).decompose()
+
+    def __sub__(self, other: Section) -> Section:
+        return Section(self._shape - other._shape) if self.may_meet(other) else self
+
+    def __and__(self, other: Section) -> Section:
+        return Section(self._shape ^ other._shape) if self.may_meet(other) else union([])
+
+    def may_meet(self, other: Section) -> bool:
+        """Tells whether the boxes overlap by more than nothing."""
+        if self.is_empty or other.is_empty:
+            return False
+        (a0, a1, a2, a3), (b0, b1, b2, b3) = self.box, other.box
+        return a0 < b2 and b0 < a2 and a1 < b3 and b1 < a3
+
+    def is_boxed_by(self, other: Section) -> bool:
+        """Tells whether its box lies in that of the other."""
+        (a0, a1, a2, a3), (b0, b1, b2, b3), e = self.box, other.box, NEGLIGIBLE
+        return a0 >= b0 - e and a1 >= b1 - e and a2 <= b2 + e and a3 <= b3 + e
+
+    @property
+    def is_nothing(self) -> bool:
+        """Whether it is empty, or thinner than the tolerance."""
+        left, bottom, right, top = self.box
+        return self._is_below((right - left) + (top - bottom))
+
+    def _is_below(self, scale: float) -> bool:
+        return self.is_empty or abs(self.area) <= NEGLIGIBLE * scale
+
+    def overlaps(self, other: Section) -> bool:
+        return not (self & other).is_nothing
+
+    def covers(self, other: Section) -> bool:
+        """Tells whether nothing of the other lies outside."""
+        if self.is_empty or other.is_empty or not other.is_boxed_by(self):
+            return False
+        return (other - self)._is_below(math.sqrt(abs(other.area)))
+
+    def mask(self, spots: Polygon) -> Mask:
+        """Returns the mask of the points inside, in grid units."""
+        within = np.zeros(len(spots), dtype=np.bool_)
+        if not self.is_empty:
+            left, bottom, right, top = self.box
+            near = np.flatnonzero(((spots >= (left, bottom)) & (spots <= (right, top))).all(axis=1))
+            if len(near):
+                within[near] = inside(self.to_polygons(), spots[near])
+        return within
 
 
 @lru_cache(maxsize=1)
@@ -53,8 +125,7 @@ def _manifold() -> Any:
 def fill(polygons: Sequence[Polygon], rule: Literal["EvenOdd", "NonZero"]) -> Section:
     m = _manifold()
     kept = [p for p in polygons if len(p) > 2]
-    section: Section = m.CrossSection(kept, getattr(m.FillRule, rule)) if kept else m.CrossSection()
-    return section
+    return Section(m.CrossSection(kept, getattr(m.FillRule, rule)) if kept else m.CrossSection())
 
 
 def widened(polygon: Polygon, by: float, rough: float = 0.0) -> Polygon:
@@ -68,7 +139,7 @@ def widened(polygon: Polygon, by: float, rough: float = 0.0) -> Polygon:
         section = m.CrossSection([polygon], m.FillRule.NonZero)
         return section.offset(reach, m.JoinType.Round, 2.0, _CORNERS)
 
-    section: Section = grown(by)
+    section = grown(by)
     if rough:
         left, bottom, right, top = section.bounds()
         box = m.CrossSection.square((right - left, top - bottom)).translate((left, bottom))
@@ -82,68 +153,11 @@ def widened(polygon: Polygon, by: float, rough: float = 0.0) -> Polygon:
 def union(sections: Sequence[Section]) -> Section:
     """Returns the union of any number of sections."""
     m = _manifold()
-    full = [s for s in sections if not s.is_empty()]
+    full = [s for s in sections if not s.is_empty]
     if len(full) == 1:
         return full[0]
-    section: Section = m.CrossSection.batch_boolean(full, m.OpType.Add) if full else m.CrossSection()
-    return section
-
-
-def difference(a: Section, b: Section) -> Section:
-    return a - b if boxes_meet(a, b) else a
-
-
-def intersection(a: Section, b: Section) -> Section:
-    return a ^ b if boxes_meet(a, b) else union([])
-
-
-def boxes_meet(a: Section, b: Section) -> bool:
-    """Tells whether the bounding boxes overlap by more than nothing."""
-    if a.is_empty() or b.is_empty():
-        return False
-    (a0, a1, a2, a3), (b0, b1, b2, b3) = a.bounds(), b.bounds()
-    return bool(a0 < b2 and b0 < a2 and a1 < b3 and b1 < a3)
-
-
-def box_within(a: Section, b: Section) -> bool:
-    """Tells whether the box of a lies in the box of b."""
-    (a0, a1, a2, a3), (b0, b1, b2, b3) = a.bounds(), b.bounds()
-    e = NEGLIGIBLE
-    return bool(a0 >= b0 - e and a1 >= b1 - e and a2 <= b2 + e and a3 <= b3 + e)
-
-
-def is_nothing(section: Section, scale: float | None = None) -> bool:
-    """Tells whether an area is empty or thinner than the tolerance, compared with the size `scale`."""
-    if section.is_empty():
-        return True
-    if scale is None:
-        left, bottom, right, top = section.bounds()
-        scale = (right - left) + (top - bottom)
-    return bool(abs(section.area()) <= NEGLIGIBLE * scale)
-
-
-def covers(cover: Section, section: Section) -> bool:
-    """Tells whether nothing of the section lies outside the cover."""
-    if section.is_empty() or cover.is_empty() or not box_within(section, cover):
-        return False
-    return is_nothing(difference(section, cover), math.sqrt(abs(section.area())))
-
-
-def holes_of(section: Section) -> list[Section]:
-    """Returns the areas that the inner outlines of a section enclose."""
-    whole = fill([p for p in section.to_polygons() if polygon_area(p) > 0], "NonZero")
-    return difference(whole, section).decompose()
-
-
-def inside_mask(section: Section, spots: Polygon) -> Mask:
-    """Returns the mask of points, in grid units, inside a section."""
-    within = np.zeros(len(spots), dtype=np.bool_)
-    if not section.is_empty():
-        left, bottom, right, top = section.bounds()
-        near = np.flatnonzero(((spots >= (left, bottom)) & (spots <= (right, top))).all(axis=1))
-        if len(near):
-            within[near] = inside(section.to_polygons(), spots[near])
-    return within
+    shapes = [s._shape for s in full]
+    return Section(m.CrossSection.batch_boolean(shapes, m.OpType.Add) if shapes else m.CrossSection())
 
 
 def filled(

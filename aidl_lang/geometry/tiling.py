@@ -20,7 +20,7 @@ import numpy as np
 
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
-from aidl_lang.geometry.boolean import clearance, clipped_each, within
+from aidl_lang.geometry.boolean import clearance, clipped_each, common
 from aidl_lang.geometry.curves import (
     Bounds,
     Floats,
@@ -190,8 +190,8 @@ def tiled_areas(cell: Region, region: Region, lattice: Lattice, *, whole: bool) 
     if whole:
         inner, crossing = [*inner, *_uncut(crossing, region)], []
     if _meet_each_other(cell, lattice):
-        return within(region, [*inner, *crossing])
-    cut = within(region, [_together(crossing)]) if crossing else Region()
+        return common(region, *inner, *crossing)
+    cut = common(region, _together(crossing)) if crossing else Region()
     return _together([*inner, cut])
 
 
@@ -202,7 +202,7 @@ def tiled_bars(cell: Sequence[Piece], region: Region, lattice: Lattice, width: f
     single, strokes = _told_apart(cell, lattice, box)
     if single:
         strokes += [_moved(c, way) for way in lattice.ways(*_reach(single, box)) for c in single]
-    return within(region, [thick(strokes, width, "square")]) if strokes else Region()
+    return common(region, thick(strokes, width, "square")) if strokes else Region()
 
 
 def _anchor(region: Region, step: Vec, sense: float, *, is_middle: bool) -> Vec:
@@ -274,7 +274,7 @@ def _uncut(areas: Sequence[Region], region: Region) -> list[Region]:
     kept = [r for r, pieces in zip(areas, found, strict=True) if all(one.is_whole for one in pieces)]
     if not any(face.holes for face in region.faces):
         return kept
-    return [r for r in kept if abs(within(region, [r]).area - r.area) <= RELATIVE_TOLERANCE * r.area]
+    return [r for r in kept if abs(common(region, r).area - r.area) <= RELATIVE_TOLERANCE * r.area]
 
 
 def _moved(curve: Piece, way: Vec) -> Piece:

@@ -29,7 +29,7 @@ from aidl_lang.geometry.curves import Bounds, Line, Piece, Vec, larger_side, uni
 from aidl_lang.geometry.drawing import Stroke
 from aidl_lang.geometry.network import Network, with_finer_chords
 from aidl_lang.geometry.region import Face, Region, measure
-from aidl_lang.geometry.sections import difference, filled, intersection, trace_all, union
+from aidl_lang.geometry.sections import filled, trace_all, union
 
 FILLS = {"both": "#cfd4db", "before": "#fbe3c0", "after": "#6db6e8"}
 INKS = {"both": "#64748b", "before": "#c2500a", "after": "#0b3c5d"}
@@ -60,18 +60,17 @@ def parts(before: Sequence[Region], after: Sequence[Region]) -> dict[str, Region
     pieces = [p for region in (*before, *after) for loop in region.loops for p in loop.pieces]
     if not pieces:
         return dict.fromkeys(FILLS, Region())
-    network = Network(pieces)
 
-    def traced() -> list[Region]:
+    def traced(network: Network) -> list[Region]:
         sections, number = [], 0
         for region in (*before, *after):
             sections.append(filled(network, [loop.pieces for loop in region.loops], number))
             number += sum(len(loop.pieces) for loop in region.loops)
         first, last = union(sections[: len(before)]), union(sections[len(before) :])
-        wanted = [intersection(first, last), difference(first, last), difference(last, first)]
+        wanted = [first & last, first - last, last - first]
         return [outline.region for outline in trace_all(network, wanted)]
 
-    return dict(zip(FILLS, with_finer_chords(network, traced), strict=True))
+    return dict(zip(FILLS, with_finer_chords(Network(pieces), traced), strict=True))
 
 
 def _box(*versions: Version) -> Bounds:
