@@ -195,36 +195,21 @@ class Part:
     def to_dict(self) -> dict[str, object]:
         """Returns the form in JSON."""
         left, bottom, right, top = self.box
-        squares = self.inertia
         return {
-            "path": self.path,
-            "kind": self.kind,
-            "bodies": self.bodies,
-            "area": self.area,
-            "perimeter": self.perimeter,
-            "centroid": self.centroid,
+            **_read(self, "path", "kind", "bodies", "area", "perimeter", "centroid"),
             "box": {"left": left, "right": right, "top": top, "bottom": bottom},
             "width": right - left,
             "height": top - bottom,
-            "pieces": self.pieces,
-            "holes": self.holes,
-            "inertia": {
-                "xx": squares.xx,
-                "yy": squares.yy,
-                "xy": squares.xy,
-                "polar": squares.polar,
-                "principal": squares.principal,
-                "angle": squares.angle,
-            },
+            **_read(self, "pieces", "holes"),
+            "inertia": _read(self.inertia, "xx", "yy", "xy", "polar", "principal", "angle"),
             "wall": self.wall and self.wall.to_dict(),
             "gap": self.gap and self.gap.to_dict(),
-            "thickness": self.thickness,
-            "material": self.material,
-            "density": self.density,
-            "volume": self.volume,
-            "mass": self.mass,
-            "quantity": self.quantity,
+            **_read(self, "thickness", "material", "density", "volume", "mass", "quantity"),
         }
+
+
+def _read(of: Part | Inertia, *names: str) -> dict[str, object]:
+    return {name: getattr(of, name) for name in names}
 
 
 @record()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import pairwise
 
@@ -17,7 +17,7 @@ from aidl_lang.building.values import ListVal, Num
 from aidl_lang.checking.units import ANGLE, LENGTH
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
-from aidl_lang.geometry.curves import Arc, Circle, Ellipse, EllipseArc, Line, Piece, Vec
+from aidl_lang.geometry.curves import Arc, Circle, Ellipse, EllipseArc, Line, Piece, Vec, larger_side
 from aidl_lang.geometry.nearness import inside
 from aidl_lang.geometry.region import Region
 from aidl_lang.geometry.solved import (
@@ -43,27 +43,22 @@ def is_clipped(root: SolvedStructure) -> bool:
 
 def left_of(sizes: Sequence[Dimension], root: SolvedStructure) -> list[Dimension]:
     """Returns the sizes of which both ends are still there where structures are clipped."""
-    clips = [(f"{s.path}.", _Inside(s.inside)) for s in root.walk() if s.inside is not None]
-    return [d for d in sizes if all(clip.shows(d) for path, clip in clips if f"{d.of}.".startswith(path))]
+    clips = [(f"{s.path}.", _seen_in(s.inside)) for s in root.walk() if s.inside is not None]
+    own = ((d, [shows for path, shows in clips if f"{d.of}.".startswith(path)]) for d in sizes)
+    return [d for d, around in own if all(shows(spots) for shows in around for spots in _ends(d))]
 
 
-class _Inside:
-    """The region that a structure is clipped to."""
+def _seen_in(region: Region) -> Callable[[Sequence[Vec]], bool]:
+    """Returns what tells whether a region has one of some places, inside or on its border."""
+    size = larger_side(region.box)
+    polygons = region.polygons(_CHORD * size)
 
-    def __init__(self, region: Region) -> None:
-        left, bottom, right, top = region.box if region else (0.0, 0.0, 0.0, 0.0)
-        size = max(right - left, top - bottom)
-        self._region, self._near = region, _NEAR * size
-        self._polygons = region.polygons(_CHORD * size) if region else []
+    def has_one(spots: Sequence[Vec]) -> bool:
+        return bool(inside(polygons, np.array(spots)).any()) or any(
+            math.dist(c.point(c.nearest(p)), p) <= _NEAR * size for p in spots for c in region.pieces
+        )
 
-    def shows(self, dimension: Dimension) -> bool:
-        return all(self._has_one(spots) for spots in _ends(dimension))
-
-    def _has_one(self, spots: Sequence[Vec]) -> bool:
-        if inside(self._polygons, np.array(spots)).any():
-            return True
-        borders = self._region.pieces
-        return any(math.dist(c.point(c.nearest(p)), p) <= self._near for p in spots for c in borders)
+    return has_one
 
 
 def _ends(dimension: Dimension) -> Iterator[Sequence[Vec]]:

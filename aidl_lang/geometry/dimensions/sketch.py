@@ -273,11 +273,11 @@ class Sketch:
             if other is None:
                 continue
             self._equate(_off_middle, spot.along(axis), other.along(axis), plain(axle))
-            self._equate(_differing, spot.along(1 - axis), other.along(1 - axis))
+            self.equations.append(less(spot.along(1 - axis), other.along(1 - axis)))
         for own in self.rounds:
             twin = self._rounds.find((*flipped(own.curve.center, axis, middle), own.curve.radius))
             if twin is not None:
-                self._equate(_differing, plain(own.radius), plain(twin.radius))
+                self.equations.append(less(plain(own.radius), plain(twin.radius)))
         return plain(axle)
 
     def levels(self) -> list[Level]:
@@ -413,10 +413,6 @@ def _off(a: Spot, center: Spot, radius: int, z: Unknowns) -> complex:
 
 def _off_middle(a: Reading, b: Reading, middle: Reading, z: Unknowns) -> complex:
     return a.of(z) + b.of(z) - 2 * middle.of(z)
-
-
-def _differing(a: Reading, b: Reading, z: Unknowns) -> complex:
-    return a.of(z) - b.of(z)
 
 
 def _crossing(a: Spot, b: Spot, c: Spot, d: Spot, axis: int, z: Unknowns) -> complex:
