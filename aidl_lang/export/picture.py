@@ -33,7 +33,7 @@ from aidl_lang.export.marks import (
 )
 from aidl_lang.export.overlay import explain, labels
 from aidl_lang.geometry.boolean import united, without
-from aidl_lang.geometry.curves import Bounds, Line, Piece, Vec, all_bounds, larger_side, union_bounds
+from aidl_lang.geometry.curves import Bounds, Line, Piece, Vec, larger_side, union_bounds
 from aidl_lang.geometry.drawing import Body, Drawing, Stroke
 from aidl_lang.geometry.nearness import inside
 from aidl_lang.geometry.region import Polygon, Region, piece_points
@@ -480,7 +480,7 @@ _STEPS = np.linspace(0.0, 1.0, 9)
 def gradient_of(shade: Shade, color: str, outline: Sequence[Piece]) -> Gradient:
     """Returns the fill of a colour in what has an outline, of which some may be hidden."""
     stops = tuple(Stop(share, _toned(color, tone)) for share, tone in _LIGHT.get(shade.kind, ()))
-    left, bottom, right, top = union_bounds(all_bounds(outline))
+    left, bottom, right, top = union_bounds([piece.box for piece in outline])
     width, height = right - left, top - bottom
     if shade.way is None:
         center = (left + width / 2, bottom + height / 2)

@@ -17,7 +17,6 @@ import numpy as np
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
 from aidl_lang.geometry.curves import TAU, Arc, Bezier, Circle, Floats, Line, Piece, Vec, turn_between
-from aidl_lang.geometry.finishing import direction
 from aidl_lang.geometry.nearness import from_sides
 from aidl_lang.geometry.region import Face, Loop, Region, length
 
@@ -106,7 +105,7 @@ class _Outline:
         exact = [isinstance(p, Line | Arc) and length(p) >= self._joined for p in pieces]
         runs_on = [
             not (exact[k - 1] or exact[k])
-            and abs(turn_between(direction(pieces[k - 1], 1.0), direction(pieces[k], 0.0))) < _SMOOTH
+            and abs(turn_between(pieces[k - 1].direction(1.0), pieces[k].direction(0.0))) < _SMOOTH
             for k in range(count)
         ]
         first = runs_on.index(False) if self._closed and False in runs_on else 0
@@ -156,7 +155,7 @@ class _Outline:
             return start if before is None else end
         middle = (start[0] + end[0]) / 2, (start[1] + end[1]) / 2
         reach = _LEEWAY * 2 * self._tolerance
-        tip = _crossing(start, direction(before.pieces[-1], 1.0), end, direction(after.pieces[0], 0.0))
+        tip = _crossing(start, before.pieces[-1].direction(1.0), end, after.pieces[0].direction(0.0))
         if tip is not None and math.dist(tip, middle) <= reach:
             return (tip[0] + middle[0]) / 2, (tip[1] + middle[1]) / 2
         return middle if math.dist(start, end) <= reach else None
@@ -235,7 +234,8 @@ class _Fit:
         start, end = self._place(i), self._place(j)
         if j - i == 1 or self._along[j] - self._along[i] <= self._tolerance:
             return [Line(start, end)] if start != end else []
-        found = _pair(start, direction(*self._at[i]), end, direction(*self._at[j]))
+        (first, t0), (last, t1) = self._at[i], self._at[j]
+        found = _pair(start, first.direction(t0), end, last.direction(t1))
         return found if found is not None and self._is_near(found, self._spots[i : j + 1]) else None
 
     def _is_near(self, arcs: Sequence[Piece], spots: Floats) -> bool:

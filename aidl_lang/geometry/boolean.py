@@ -22,7 +22,6 @@ from aidl_lang.geometry.curves import (
     Line,
     Piece,
     Vec,
-    all_bounds,
     larger_side,
     union_bounds,
 )
@@ -474,7 +473,7 @@ def lettered_region(letters: Sequence[Sequence[Piece]]) -> Region | None:
     """Returns the region of letters whose contours follow one another, do not cross, and turn one way and the
     other where they are nested: nothing need be arranged for it. None if one is open, or two may meet.
     """
-    boxes = [union_bounds(all_bounds(letter)) for letter in letters]
+    boxes = [union_bounds([piece.box for piece in letter]) for letter in letters]
     tolerance = RELATIVE_TOLERANCE * larger_side(union_bounds(boxes))
     if len(near_rows(boxes, tolerance)):
         return None

@@ -177,12 +177,8 @@ def _error(piece: Piece) -> float:
 
 
 def direction(piece: Piece, t: float) -> float:
-    """Returns the direction of travel at an end, radians; of a doubled control point, by a small step."""
-    dx, dy = piece.derivative(t)
-    start, end = piece.ends
-    if math.hypot(dx, dy) <= 1e-9 * max(math.dist(start, end), 1e-300):
-        a, b = (piece.point(at) for at in ((0.0, 1e-4) if t == 0 else (1 - 1e-4, 1.0)))
-        dx, dy = b[0] - a[0], b[1] - a[1]
+    """Returns the direction of travel, radians."""
+    dx, dy = piece.direction(t)
     return math.atan2(dy, dx)
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import sys
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import fields, replace
 from operator import attrgetter
 from typing import Any, ClassVar, Self, TypeAlias, get_args
@@ -62,6 +62,20 @@ class _Curve:
 
     def second_derivative(self, t: float) -> Vec:
         return 0.0, 0.0
+
+    def direction(self, t: float) -> Vec:
+        """Returns the unit tangent; where control points of a Bézier curve are doubled, that beside it."""
+        dx, dy = self.derivative(t)
+        size = math.hypot(dx, dy)
+        if size <= 1e-9 * math.dist(*self.ends):
+            dx, dy = self.derivative(t + 1e-6 if t < 0.5 else t - 1e-6)
+            size = math.hypot(dx, dy) or 1.0
+        return dx / size, dy / size
+
+    def parallel(self, t: float, left: float) -> Vec:
+        """Returns the point at a distance to the left of that at a parameter."""
+        (x, y), (dx, dy) = self.point(t), self.direction(t)
+        return x - left * dy, y + left * dx
 
     def extremes(self) -> list[float]:
         """Returns the parameters of tangents parallel to an axis (some may lie outside 0..1)."""
@@ -475,9 +489,6 @@ def turn_between(a: Vec, b: Vec) -> float:
 
 # --- Boxes.
 
-_MANY = 16
-"""Curves from which on it takes less to work them out at once."""
-
 LARGEST = 1e12
 """Coordinates beyond this, in mm, are a mistake and are not drawn."""
 
@@ -488,26 +499,6 @@ NO_LENGTH = 1e-7
 def are_near(a: Bounds, b: Bounds) -> bool:
     """Tells whether two boxes touch or overlap."""
     return a[0] <= b[2] and b[0] <= a[2] and a[1] <= b[3] and b[1] <= a[3]
-
-
-def all_bounds(curves: Iterable[Piece]) -> list[Bounds]:
-    """Returns the bounding box of each of some curves; those of many cubics are worked out at once."""
-    every = list(curves)
-    cubics = [curve for curve in every if isinstance(curve, Bezier)]
-    if len(cubics) < _MANY:
-        return [curve.box for curve in every]
-    p = np.array([_VALUES[Bezier](curve) for curve in cubics]).transpose(1, 0, 2)
-    a, b, c = p[3] - 3 * p[2] + 3 * p[1] - p[0], 2 * (p[2] - 2 * p[1] + p[0]), p[1] - p[0]
-    with np.errstate(divide="ignore", invalid="ignore"):
-        q = -(b + np.copysign(np.sqrt(b * b - 4 * a * c), b)) / 2
-        is_flat = np.abs(a) <= 1e-14 * (np.abs(b) + np.abs(c))
-        t = np.stack((np.where(is_flat, -c / b, q / a), c / q))
-    t = np.where((t > 0) & (t < 1), t, 0.0)
-    s = 1 - t
-    extremes = s * s * s * p[0] + 3 * s * s * t * p[1] + 3 * s * t * t * p[2] + t * t * t * p[3]
-    spots = np.concatenate((extremes, p[:1], p[3:]))
-    boxes = iter(np.concatenate((spots.min(axis=0), spots.max(axis=0)), axis=1).tolist())
-    return [tuple(next(boxes)) if isinstance(curve, Bezier) else curve.box for curve in every]
 
 
 def union_bounds(boxes: Sequence[Bounds]) -> Bounds:

@@ -33,7 +33,7 @@ from aidl_lang.geometry.bodies import (
     without_gaps,
 )
 from aidl_lang.geometry.boolean import Contact, Contacts, Solid, contacts, lettered_region
-from aidl_lang.geometry.curves import Bounds, Piece, all_bounds, has_extent, larger_side, union_bounds, usable
+from aidl_lang.geometry.curves import Bounds, Piece, has_extent, larger_side, union_bounds, usable
 from aidl_lang.geometry.faces import ENGRAVED, Shape, own_faces, region_of, union_of
 from aidl_lang.geometry.legibility import (
     COVERED,
@@ -271,7 +271,7 @@ def draw(model: SolvedModel) -> tuple[Drawing, Findings]:
 
     plans = tuple(PlanBox(s.path, s.name, s.box.bounds) for s in root.walk() if s.is_empty and s.box)
     boxes = [b.box for b in bodies]
-    boxes += all_bounds(piece for s in strokes for piece in s.pieces)
+    boxes += (piece.box for s in strokes for piece in s.pieces)
     drawing = Drawing(bodies, regions, seams, strokes, plans, touching, styles, union_bounds(boxes))
     return drawing, Findings([d for d in (*unusable, *empty) if d.is_error], Later(everything))
 
@@ -328,10 +328,9 @@ def _collect(root: SolvedStructure, notes: list[Diagnostic]) -> tuple[_Curves, _
             leaves = []
             vanished = []
             on_part = {id(leaf) for part in geometry.walk() if part.type == ENGRAVED for leaf in part.parts}
-            found = [(leaf, usable(leaf.curve) if leaf.curve else None) for leaf in geometry.leaves()]
-            around = iter(all_bounds(curve for _, curve in found if curve is not None))
-            for leaf, curve in found:
-                if curve is None or not has_extent(box := next(around)):
+            for leaf in geometry.leaves():
+                curve = usable(leaf.curve) if leaf.curve else None
+                if curve is None or not has_extent(box := curve.box):
                     vanished.append(leaf)
                     continue
                 curves, boxes = ink if structure.kind == "drawing" or id(leaf) in on_part else solid

@@ -202,9 +202,7 @@ def _cross(a: Section, b: Section) -> bool:
     return not (a - b).is_nothing and not (b - a).is_nothing
 
 
-# --- The faces that a structure draws itself.
-#
-# A closed geometry (a circle, a compound shape) is filled by itself, its nested loops alternating. Free-
+# --- A closed geometry (a circle, a compound shape) is filled by itself, its nested loops alternating. Free-
 # standing curves are chained across names: what lies inside their outlines is filled, dangling ends are
 # trimmed. Free curves that close only together with the outline of a closed geometry (an arc on top of a
 # rectangle) add what they enclose outside of it.

@@ -9,9 +9,8 @@ Newton's method, following the radius up from 0.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import field, replace
-from functools import partial
 
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
@@ -37,7 +36,7 @@ class Arm:
     @property
     def way(self) -> Vec:
         """The direction in which it leaves the corner, of length 1."""
-        return direction(self.curve, 0.0)
+        return self.curve.direction(0.0)
 
 
 @record(slots=True)
@@ -96,16 +95,6 @@ class Result:
     curves: list[Piece | None]
     finished: list[Finished] = field(default_factory=list)
     failures: list[TooLarge] = field(default_factory=list)
-
-
-def direction(curve: Piece, t: float) -> Vec:
-    """Returns the unit tangent; at a stalled end of a Bézier curve that of the curve beside it."""
-    dx, dy = curve.derivative(t)
-    size = math.hypot(dx, dy)
-    if size == 0:
-        dx, dy = curve.derivative(t + 1e-6 if t < 0.5 else t - 1e-6)
-        size = math.hypot(dx, dy) or 1.0
-    return dx / size, dy / size
 
 
 def arms_at(curves: Sequence[Piece], p: Vec, tolerance: float) -> list[Arm]:
@@ -243,7 +232,7 @@ def _round(corner: Corner, radius: float) -> tuple[float, float, Vec] | None:
 def _moved(curve: Line | Arc, left: float) -> Line | Circle | None:
     """Returns the endless line or whole circle of all points at a distance to the left of a curve."""
     if isinstance(curve, Line):
-        dx, dy = direction(curve, 0.0)
+        dx, dy = curve.direction(0.0)
         (x0, y0), (x1, y1) = curve.start, curve.end
         return Line((x0 - left * dy, y0 + left * dx), (x1 - left * dy, y1 + left * dx))
     radius = curve.radius - math.copysign(left, left * curve.sweep)
@@ -256,7 +245,7 @@ def _meet(a: Line | Circle, b: Line | Circle) -> list[Vec]:
         return line_circle(b, a, slack) if isinstance(b, Line) else circle_circle(a, b, slack)
     if isinstance(b, Circle):
         return line_circle(a, b, _EXACT * b.radius)
-    (ax, ay), (bx, by) = direction(a, 0.0), direction(b, 0.0)
+    (ax, ay), (bx, by) = a.direction(0.0), b.direction(0.0)
     x, y = b.start[0] - a.start[0], b.start[1] - a.start[1]
     t = (x * by - y * bx) / (ax * by - ay * bx)
     return [(a.start[0] + t * ax, a.start[1] + t * ay)]
@@ -276,7 +265,7 @@ def _round_by_newton(a: Piece, b: Piece, side: float, radius: float) -> tuple[fl
     """Follows the touching points from the corner as the radius grows; None once one leaves its arm."""
 
     def gap(u: float, v: float, r: float) -> Vec:
-        p, q = parallel(a, u, side * r), parallel(b, v, -side * r)
+        p, q = a.parallel(u, side * r), b.parallel(v, -side * r)
         return p[0] - q[0], p[1] - q[1]
 
     u = v = 0.0
@@ -296,13 +285,7 @@ def _round_by_newton(a: Piece, b: Piece, side: float, radius: float) -> tuple[fl
                 break
         if not (math.hypot(*gap(u, v, r)) < _EXACT * max(1.0, radius) and min(u, v) >= 0 and max(u, v) <= 1):
             return None
-    return u, v, parallel(a, u, side * radius)
-
-
-def parallel(curve: Piece, t: float, left: float) -> Vec:
-    """Returns the point at a distance to the left of that at a parameter."""
-    (x, y), (dx, dy) = curve.point(t), direction(curve, t)
-    return x - left * dy, y + left * dx
+    return u, v, a.parallel(u, side * radius)
 
 
 # --- Fillets and chamfers as large as fits: the sizes that `max` stands for.
@@ -319,38 +302,27 @@ def fitted(curves: Sequence[Piece], works: Sequence[Work], runs: Sequence[int], 
     one already. Runs grow together, and each until one of its corners has no more room.
     """
     sizes: dict[int, float] = {}
+
+    def sized_by(sizes: Mapping[int, float]) -> list[Work]:
+        pairs = zip(works, runs, strict=True)
+        return [replace(work, sizes=(sizes[run], sizes[run])) if run else work for work, run in pairs]
+
+    def fit(tried: Mapping[int, float], asked: Collection[int]) -> bool:
+        """Tells whether nothing of the runs that are asked for fails or runs into another."""
+        checkpoint()
+        pairs = zip(sized_by({**sizes, **tried}), runs, strict=True)
+        sized = [(work, run) for work, run in pairs if work.sizes[0] > 0]
+        own = {id(work) for work, run in sized if run in asked}
+        failures = finish(curves, [work for work, _ in sized]).failures
+        return not any(id(f.work) in own or id(f.other) in own for f in failures)
+
     while growing := sorted({run for run in runs if run and run not in sizes}):
-        trial = partial(_fit, curves, works, runs, sizes)
-        size = _largest(lambda size: trial(dict.fromkeys(growing, size), growing), extent)  # noqa: B023
+        size = _largest(lambda size: fit(dict.fromkeys(growing, size), growing), extent)
         level = dict.fromkeys(growing, size)
         larger = max(size * (1 + _MORE), 2 * _NOTHING * extent)
-        stuck = [run for run in growing if not trial(level | {run: larger}, [run])]
+        stuck = [run for run in growing if not fit(level | {run: larger}, [run])]
         sizes |= dict.fromkeys(stuck or growing, size)
-    return _sized(works, runs, sizes)
-
-
-def _sized(works: Sequence[Work], runs: Sequence[int], sizes: Mapping[int, float]) -> list[Work]:
-    return [
-        replace(work, sizes=(sizes[run], sizes[run])) if run else work
-        for work, run in zip(works, runs, strict=True)
-    ]
-
-
-def _fit(
-    curves: Sequence[Piece],
-    works: Sequence[Work],
-    runs: Sequence[int],
-    known: Mapping[int, float],
-    tried: Mapping[int, float],
-    asked: Sequence[int],
-) -> bool:
-    """Tells whether nothing of the runs that are asked for fails or runs into another."""
-    checkpoint()
-    changed = zip(_sized(works, runs, {**known, **tried}), runs, strict=True)
-    sized = [(work, run) for work, run in changed if work.sizes[0] > 0]
-    own = {id(work) for work, run in sized if run in asked}
-    failures = finish(curves, [work for work, _ in sized]).failures
-    return not any(id(f.work) in own or id(f.other) in own for f in failures)
+    return sized_by(sizes)
 
 
 def _largest(fits: Callable[[float], bool], extent: float) -> float:

@@ -19,7 +19,7 @@ from aidl_lang.common.prose import counted, named, rough
 from aidl_lang.common.records import record
 from aidl_lang.common.source import Span
 from aidl_lang.geometry.boolean import Solid, stretches_beside
-from aidl_lang.geometry.curves import NO_LENGTH, Bounds, Line, Piece, Vec, all_bounds, are_near, union_bounds
+from aidl_lang.geometry.curves import NO_LENGTH, Bounds, Line, Piece, Vec, are_near, union_bounds
 from aidl_lang.geometry.faces import Shape
 from aidl_lang.geometry.intersect import meet
 from aidl_lang.geometry.nearness import from_sides, inside
@@ -291,7 +291,7 @@ def colliding_notes(
         texts: list[tuple[SolvedGeometry, _Boxed]] = []
         for top in structure.drawn:
             if own := [p for g in top.walk() if g.type == LETTERING for p in inked.get(g.path, ())]:
-                boxes = all_bounds(own)
+                boxes = [piece.box for piece in own]
                 texts.append((top, (union_bounds(boxes), own, boxes)))
         texts.sort(key=lambda text: text[1][0])
         for k, (one, boxed) in enumerate(texts):

@@ -21,7 +21,6 @@ from aidl_lang.geometry.curves import (
     turn_between,
     union_bounds,
 )
-from aidl_lang.geometry.finishing import direction, parallel
 from aidl_lang.geometry.network import Network
 from aidl_lang.geometry.region import Face, Loop, Region
 from aidl_lang.geometry.sections import Section, arranged, filled, union
@@ -52,7 +51,7 @@ _SHARPEST = math.radians(168.5)
 def beside(curve: Piece, left: float) -> Iterator[Strip]:
     """Yields the strips within a distance to the left of a curve (to its right for a negative one)."""
     if isinstance(curve, Line):
-        yield (_between(curve, Line(parallel(curve, 0.0, left), parallel(curve, 1.0, left))),)
+        yield (_between(curve, Line(curve.parallel(0.0, left), curve.parallel(1.0, left))),)
     elif isinstance(curve, Circle):
         other = curve.radius - left
         yield ((curve,), (Circle(curve.center, other),)) if other > 0 else ((curve,),)
@@ -103,7 +102,7 @@ def _beside_free(curve: Piece, left: float) -> Iterator[Strip]:
             is_fine = _error(curve, t0, t1, left, top) <= FIT * scale
         else:
             top = Line(*(_reached(curve, t, left) for t in (t0, t1)))
-            is_fine = all(bent) and abs(turn_between(direction(curve, t0), direction(curve, t1))) < _BEND
+            is_fine = all(bent) and abs(turn_between(curve.direction(t0), curve.direction(t1))) < _BEND
         if is_fine or depth >= _DEEPEST:
             yield (_between(curve.part(t0, t1, curve.point(t0), curve.point(t1)), top),)
         else:
@@ -114,7 +113,7 @@ def _beside_free(curve: Piece, left: float) -> Iterator[Strip]:
 def _reached(curve: Piece, t: float, left: float) -> Vec:
     """Returns the end of a normal a little beyond the centre of curvature, but within the distance."""
     stretch = _stretch(curve, t, left)
-    return parallel(curve, t, left * min(1.0, 1.1 / abs(1 - stretch)) if stretch != 1 else left)
+    return curve.parallel(t, left * min(1.0, 1.1 / abs(1 - stretch)) if stretch != 1 else left)
 
 
 def _stretch(curve: Piece, t: float, left: float) -> float:
@@ -126,7 +125,7 @@ def _stretch(curve: Piece, t: float, left: float) -> float:
 
 def _fitted(curve: Piece, t0: float, t1: float, left: float) -> Bezier:
     """Returns the cubic with the ends and the derivatives of the parallel curve."""
-    p, q = parallel(curve, t0, left), parallel(curve, t1, left)
+    p, q = curve.parallel(t0, left), curve.parallel(t1, left)
     (ax, ay), (bx, by) = curve.derivative(t0), curve.derivative(t1)
     u, v = (_stretch(curve, t, left) * (t1 - t0) / 3 for t in (t0, t1))
     return Bezier(p, (p[0] + u * ax, p[1] + u * ay), (q[0] - v * bx, q[1] - v * by), q)
@@ -137,7 +136,7 @@ def _error(curve: Piece, t0: float, t1: float, left: float, fitted: Bezier) -> f
     worst = 0.0
     for s in (0.2, 0.35, 0.5, 0.65, 0.8):
         t = t0 + s * (t1 - t0)
-        (px, py), (qx, qy), (dx, dy) = parallel(curve, t, left), fitted.point(s), direction(curve, t)
+        (px, py), (qx, qy), (dx, dy) = curve.parallel(t, left), fitted.point(s), curve.direction(t)
         worst = max(worst, abs((qx - px) * dy - (qy - py) * dx))
     return worst
 
@@ -197,7 +196,7 @@ def offset(region: Region, distance: float, sharp: bool = True) -> Region:
             along = list(beside(piece, left))
             strips += along
             if not piece.is_closed:
-                strips += wedge(piece.ends[1], direction(piece, 1.0), direction(after, 0.0), left, sharp)
+                strips += wedge(piece.ends[1], piece.direction(1.0), after.direction(0.0), left, sharp)
             # Cut where its strips are, so that the outline and they have the same curves.
             is_whole = isinstance(piece, Line | Arc | Circle)
             parts += [piece] if is_whole else [strip[0][0] for strip in along]
@@ -229,8 +228,8 @@ def _joints(curves: Sequence[Piece], near: float) -> list[tuple[Vec, list[Vec]]]
     for curve in curves:
         if curve.is_closed:
             continue
-        (start, end), (dx, dy) = curve.ends, direction(curve, 1.0)
-        for p, way in ((start, direction(curve, 0.0)), (end, (-dx, -dy))):
+        (start, end), (dx, dy) = curve.ends, curve.direction(1.0)
+        for p, way in ((start, curve.direction(0.0)), (end, (-dx, -dy))):
             ways = next((w for q, w in found if math.dist(p, q) <= near), None)
             if ways is None:
                 found.append((p, [way]))

@@ -10,14 +10,15 @@ from functools import reduce
 
 from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.records import record
+from aidl_lang.geometry import finishing
 from aidl_lang.geometry import outline_notes as notes
 from aidl_lang.geometry.boolean import clipped_each, common, united, without
 from aidl_lang.geometry.curves import LARGEST, Line, Piece, Vec, larger_side, union_bounds
 from aidl_lang.geometry.drawing import Drawing
 from aidl_lang.geometry.faces import region_of
-from aidl_lang.geometry.finishing import Arm, Corner, Result, Work, arms_at, corners_of, finish, largest
+from aidl_lang.geometry.finishing import Arm, Corner, Result, Work, arms_at, corners_of
 from aidl_lang.geometry.offsets import NEAR, hull, offset, thick
-from aidl_lang.geometry.outline_notes import Misfit, merged_notes, misfits
+from aidl_lang.geometry.outline_notes import Misfit
 from aidl_lang.geometry.region import Region, length
 from aidl_lang.geometry.solved import (
     Box,
@@ -49,7 +50,9 @@ def complete(model: SolvedModel) -> tuple[SolvedModel, list[Diagnostic]]:
     index = {g.path: g for g in model.root.walk_geometry()}
     outliner = _Outliner(tuple(f for s in model.root.walk() for f in s.finishes), index)
     root = outliner.structure(model.root)
-    return replace(model, root=root), list(dict.fromkeys([*outliner.notes, *merged_notes(outliner.misfits)]))
+    return replace(model, root=root), list(
+        dict.fromkeys([*outliner.notes, *notes.merged_notes(outliner.misfits)])
+    )
 
 
 def _leaves(g: SolvedGeometry) -> Iterator[tuple[SolvedGeometry, Piece]]:
@@ -170,6 +173,8 @@ class _Outliner:
                 width, words = recipe.numbers["width"], recipe.words
                 sharp = words["joins"] == "sharp"
                 region = thick(curves[0], width, words["caps"], sharp) if width > 0 else Region()
+            case "tiled":
+                return self._tiled(g, recipe, groups, curves[0])
             case _:
                 return self._from_regions(g, recipe, groups, curves[0])
         return self._left(g, recipe, region.pieces)
@@ -190,8 +195,6 @@ class _Outliner:
     def _from_regions(
         self, g: SolvedGeometry, recipe: Recipe, groups: list[list[SolvedGeometry]], first: list[Piece]
     ) -> list[Piece]:
-        if recipe.kind == "tiled":
-            return self._tiled(g, recipe, groups, first)
         regions = [_region(group) for group in groups]
         if recipe.kind == "clip" and not regions[0] and regions[1]:
             clipped = clipped_each(first, regions[1])
@@ -278,10 +281,10 @@ class _Outliner:
             elif told is not None and f in finishes and f.span != reasons[earlier].span:
                 self.notes.append(notes.twice(f, reasons[earlier], corner, told))
         works, reasons = self._fitted(leaves, works, reasons, told)
-        result = finish([c for _, c in leaves], works)
+        result = finishing.finish([c for _, c in leaves], works)
         if told is not None:
             if result.failures:
-                self.misfits += misfits(result, works, reasons, leaves, told)
+                self.misfits += notes.misfits(result, works, reasons, leaves, told)
             for made in result.finished:
                 reason = reasons[works.index(made.work)]
                 self.carried_out.setdefault(reason, []).append(made.work.corner.at)
@@ -294,10 +297,8 @@ class _Outliner:
         """Returns the works with the sizes of those as large as fits, without those that do not fit."""
         if all(f.sizes for f in reasons):
             return works, reasons
-        from aidl_lang.geometry.finishing import fitted
-
         curves = [c for _, c in leaves]
-        works = fitted(curves, works, [0 if f.sizes else f.run for f in reasons], _extent(curves))
+        works = finishing.fitted(curves, works, [0 if f.sizes else f.run for f in reasons], _extent(curves))
         fit = [(w, f) for w, f in zip(works, reasons, strict=True) if w.sizes[0] > 0]
         without = [(w, f) for w, f in zip(works, reasons, strict=True) if not w.sizes[0] > 0]
         if told is not None and without:
@@ -426,7 +427,7 @@ def _extent(curves: Sequence[Piece]) -> float:
 
 def _deepest(region: Region, too_deep: float) -> float:
     """Returns how far an outline can move inwards before nothing is left, to about seven digits."""
-    return largest(lambda depth: bool(offset(region, -depth)), too_deep, _HALVINGS)
+    return finishing.largest(lambda depth: bool(offset(region, -depth)), too_deep, _HALVINGS)
 
 
 # --- Drawings that are clipped to the material of a solid, once that is known.

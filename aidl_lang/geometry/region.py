@@ -23,11 +23,8 @@ from aidl_lang.geometry.curves import (
     Line,
     Piece,
     Vec,
-    all_bounds,
     union_bounds,
 )
-
-# --- Regions of the plane, bounded by exact curves.
 
 
 @record(slots=True)
@@ -126,7 +123,7 @@ class Region:
 
     @cached_property
     def box(self) -> Bounds:
-        return union_bounds(all_bounds(piece for face in self.faces for piece in face.outer.pieces))
+        return union_bounds([piece.box for face in self.faces for piece in face.outer.pieces])
 
     @property
     def area(self) -> float:

@@ -149,11 +149,9 @@ def _turns(box: Bounds, sheet: tuple[float, float]) -> list[float]:
     return [*upright, *lying]
 
 
-# --- The bodies of a drawing laid flat, apart from one another, on sheets to cut them from.
-#
-# Bodies lie as their own frames do, and are moved and turned by quarters, never mirrored: their front stays
-# up, and every curve is as exact as before. They are packed by their boxes, or in a time given for it by
-# their outlines. Those of different material or thickness are cut from different sheets.
+# --- Bodies lie as their own frames do, and are moved and turned by quarters, never mirrored: their front
+# stays up, and every curve is as exact as before. They are packed by their boxes, or in a time given for it
+# by their outlines. Those of different material or thickness are cut from different sheets.
 
 SPACING = 3.0
 """Millimetres between parts, and between them and the edge of the sheet."""

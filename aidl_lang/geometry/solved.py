@@ -21,7 +21,6 @@ from aidl_lang.geometry.curves import (
     Circle,
     Piece,
     Vec,
-    all_bounds,
     union_bounds,
 )
 from aidl_lang.geometry.region import Region
@@ -55,7 +54,7 @@ class Box:
         curves: Iterable[Piece], structures: Iterable[SolvedStructure], more: Iterable[Bounds] = ()
     ) -> Box | None:
         """Returns the box of some curves, of what is material of some structures, and of some more."""
-        boxes = [*more, *all_bounds(curves)]
+        boxes = [*more, *(curve.box for curve in curves)]
         boxes += [s.box.bounds for s in structures if s.box is not None and s.kind != "hole"]
         return Box(*union_bounds(boxes)) if boxes else None
 

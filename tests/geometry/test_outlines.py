@@ -13,7 +13,7 @@ from hypothesis import HealthCheck, assume, given
 from hypothesis import strategies as st
 
 from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, Line, Piece, Vec, inward, union_bounds
-from aidl_lang.geometry.finishing import Work, corners_of, direction, finish, fitted, sized
+from aidl_lang.geometry.finishing import Work, corners_of, finish, fitted, sized
 from aidl_lang.geometry.offsets import hull, offset, thick
 from aidl_lang.geometry.region import Face, Loop, Region, length
 from tests.amount import tries
@@ -70,7 +70,7 @@ def test_fillets_of_arcs_are_tangent(first: tuple[float, float], r: float) -> No
     assert not made.failures
     for f in made.finished:
         for t, arm, cut in zip((0.0, 1.0), f.work.corner.arms, f.cuts, strict=True):
-            (ax, ay), (bx, by) = direction(f.piece, t), direction(arm.curve, cut)
+            (ax, ay), (bx, by) = f.piece.direction(t), arm.curve.direction(cut)
             assert ax * by - ay * bx == pytest.approx(0, abs=1e-9)
             assert arm.curve.point(cut) == pytest.approx(f.piece.ends[int(t)], abs=1e-9)
 
@@ -88,7 +88,7 @@ def test_fillets_of_free_curves_are_tangent() -> None:
         for t, arm, cut in zip((0.0, 1.0), f.work.corner.arms, f.cuts, strict=True):
             p = arm.curve.point(cut)
             assert math.dist(p, f.piece.center) == pytest.approx(2, abs=1e-9)
-            (ax, ay), (bx, by) = direction(f.piece, t), direction(arm.curve, cut)
+            (ax, ay), (bx, by) = f.piece.direction(t), arm.curve.direction(cut)
             assert ax * by - ay * bx == pytest.approx(0, abs=1e-9)
 
 

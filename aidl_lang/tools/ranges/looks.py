@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 from aidl_lang.common.prose import counted, first_few, ticked
 from aidl_lang.common.records import record
 from aidl_lang.compiled import Compiled
-from aidl_lang.geometry.curves import Arc, Bounds, Line, Piece, all_bounds, union_bounds
+from aidl_lang.geometry.curves import Arc, Bounds, Line, Piece, union_bounds
 from aidl_lang.geometry.drawing import Drawing
 from aidl_lang.geometry.sections import Section, fill
 from aidl_lang.geometry.solved import SolvedGeometry, SolvedModel, SolvedStructure
@@ -187,7 +187,7 @@ def _closed(structure: SolvedStructure) -> Iterator[tuple[str, Bounds]]:
 
 
 def _box(curves: Iterable[Piece]) -> Bounds | None:
-    boxes = all_bounds(curves)
+    boxes = [curve.box for curve in curves]
     return union_bounds(boxes) if boxes else None
 
 
