@@ -128,11 +128,10 @@ def is_winding(shape: SolvedGeometry) -> bool:
 # --- What they enclose -----------------------------------------------------------------------------
 
 
-def enclosed(
+def _enclosed(
     network: Network,
     shapes: Iterable[tuple[SolvedGeometry, Sequence[int]]],
     closed: set[Use],
-    alternating: Callable[[Network, list[Use]], Section],
 ) -> tuple[Section, list[Crossing]]:
     """Returns the area of shapes of a file, each given with the numbers of its curves, and those that cross
     themselves; `closed` are the edges that lead to no open end.
@@ -148,7 +147,7 @@ def enclosed(
         if is_winding(shape):
             sections.append(fill([network.polyline(loop) for loop in _walks(network, uses)], "NonZero"))
         else:
-            sections.append(alternating(network, uses))
+            sections.append(_alternating(network, uses))
         nodes.append(set(_ends(network, uses)))
         if places := _crossings(network, uses):
             crossed.append((shape, tuple(network.nodes[node] for node in places)))
@@ -271,7 +270,7 @@ def _area(network: Network, shape: Shape, uses: list[Use]) -> tuple[Section, lis
     for leaf, number in shape.leaves:
         numbers[leaf.path.rpartition(".")[0]].append(number)
     contours = ((part, numbers[path]) for path, part in files.items())
-    return enclosed(network, contours, set(uses), _alternating)
+    return _enclosed(network, contours, set(uses))
 
 
 def _by_letter(network: Network, shape: Shape, uses: list[Use]) -> Iterator[list[Use]]:

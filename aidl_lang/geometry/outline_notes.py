@@ -23,6 +23,7 @@ from aidl_lang.geometry.finishing import (
 )
 from aidl_lang.geometry.notes import at, local
 from aidl_lang.geometry.solved import Finish, Leaves, Recipe, SolvedGeometry, SolvedStructure
+from aidl_lang.geometry.tiling import MOST
 
 _ONE_WAY = 5
 """Points of a lattice that has no second step."""
@@ -97,11 +98,11 @@ def no_lattice(g: SolvedGeometry, recipe: Recipe) -> Diagnostic:
     )
 
 
-def too_many(g: SolvedGeometry, recipe: Recipe, count: int, most: int) -> Diagnostic:
+def too_many(g: SolvedGeometry, recipe: Recipe, count: int) -> Diagnostic:
     region = recipe.operands[1][0].name
     return Diagnostic(
         "E0357",
-        f"`{g.path}` takes {count:,} copies to fill `{region}`, and {most:,} is the most",
+        f"`{g.path}` takes {count:,} copies to fill `{region}`, and {MOST:,} is the most",
         g.span,
         "too fine for this region",
         hints=("choose longer steps (a larger pitch), or fill a smaller region",),
@@ -228,28 +229,27 @@ def _works(failure: TooLarge) -> list[Work]:
     return [failure.work] if failure.other is None else [failure.work, failure.other]
 
 
+@record(frozen=False)
 class _Fault:
     """Failures that are one fault. `own` are the works whose size is changed to find one that fits: all that
     take part if they have one size, else those of the last statement.
     """
 
-    def __init__(
-        self,
-        failures: Sequence[TooLarge],
-        works: Sequence[Work],
-        reason_of: dict[int, Finish],
-        leaves: Leaves,
-        told: SolvedStructure,
-    ) -> None:
-        self.works, self.reason_of, self.leaves, self.told = works, reason_of, leaves, told
-        self.first = failures[0]
-        self.reason = reason_of[id(self.first.work)]
-        self.spans = frozenset(reason_of[id(w)].span for f in failures for w in _works(f))
+    failures: Sequence[TooLarge]
+    works: Sequence[Work]
+    reason_of: dict[int, Finish]
+    leaves: Leaves
+    told: SolvedStructure
+
+    def __post_init__(self) -> None:
+        self.first = self.failures[0]
+        self.reason = self.reason_of[id(self.first.work)]
+        self.spans = frozenset(self.reason_of[id(w)].span for f in self.failures for w in _works(f))
         self.own = self._of(self.spans)
         self.is_equal = len({max(w.sizes) for w in self.own}) == 1
         if not self.is_equal:
             self.own = self._of({self.reason.span})
-        self.is_cusp = any(f.work.corner.is_cusp for f in failures)
+        self.is_cusp = any(f.work.corner.is_cusp for f in self.failures)
         self.most = 0.0 if self.is_cusp else self._most()
 
     def _of(self, spans: frozenset[Span] | set[Span]) -> list[Work]:

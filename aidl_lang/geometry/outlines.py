@@ -32,7 +32,6 @@ from aidl_lang.geometry.solved import (
 )
 from aidl_lang.geometry.styles import is_filled
 from aidl_lang.geometry.tiling import (
-    MOST,
     Lattice,
     TooManyCopiesError,
     tiled_areas,
@@ -226,7 +225,7 @@ class _Outliner:
             else:
                 found = tiled_strokes(cell, region, lattice, whole=whole)
         except TooManyCopiesError as many:
-            self.notes.append(notes.too_many(g, recipe, many.count, MOST))
+            self.notes.append(notes.too_many(g, recipe, many.args[0]))
             return []
         return self._left(g, recipe, found)
 

@@ -253,11 +253,12 @@ def length(piece: Piece) -> float:
 
 
 @cache
-def _quadrature(spans: int = 8) -> tuple[Floats, Floats, Floats]:
-    """Nodes and weights of a quadrature in so many spans of 0..1; at each the shares of the differences of
+def _quadrature() -> tuple[Floats, Floats, Floats]:
+    """Nodes and weights of a quadrature in some spans of 0..1; at each the shares of the differences of
     control points in the slope of a cubic.
     """
     at, shares = np.array(gauss(16)).T
+    spans = 8
     t = np.concatenate([(k + at) / spans for k in range(spans)])
     return t, np.tile(shares / spans, spans), np.stack(((1 - t) ** 2, 2 * t * (1 - t), t**2), axis=1)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import field, replace
 from itertools import combinations
 
 from aidl_lang.building.curves import gauss
@@ -293,15 +293,15 @@ def measured(
     return surveyor.part(path) if path else surveyor.of_bodies(model.root.path, drawing.bodies)
 
 
+@record(frozen=False)
 class _Surveyor:
     """Measures parts of a drawing, each body once."""
 
-    def __init__(self, model: SolvedModel, drawing: Drawing, own_densities: Mapping[str, float]) -> None:
-        self.model = model
-        self.drawing = drawing
-        self.own_densities = own_densities
-        self._bodies: dict[str, Part] = {}
-        self._unknown: dict[str, str] = {}
+    model: SolvedModel
+    drawing: Drawing
+    own_densities: Mapping[str, float]
+    _bodies: dict[str, Part] = field(default_factory=dict)
+    _unknown: dict[str, str] = field(default_factory=dict)
 
     def part(self, written: str) -> Part:
         """Returns the part at a path, written with or without the name of the root."""

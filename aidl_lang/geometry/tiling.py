@@ -52,10 +52,6 @@ _AT_ONCE = 1000
 class TooManyCopiesError(Exception):
     """Raised with the number of copies that a region would take."""
 
-    def __init__(self, count: int) -> None:
-        super().__init__(count)
-        self.count = count
-
 
 @record()
 class Lattice:
@@ -127,11 +123,19 @@ class Lattice:
             raise TooManyCopiesError(len(kept))
         return [(x, y) for x, y in (kept + self.offset).tolist()]
 
-    def run_of(self, curve: Piece) -> tuple[Vec, Vec | None] | None:
+    def told_apart(self, cell: Sequence[Piece], box: Bounds) -> tuple[list[Piece], list[Piece]]:
+        """Returns the curves that end in their copy, and the lines that the others are together in a box."""
+        single, running = list[Piece](), list[Piece]()
+        for curve in cell:
+            if isinstance(curve, Line) and (run := self._run_of(curve)) is not None:
+                running += self._run_together(curve, *run, box)
+            else:
+                single.append(curve)
+        return single, running
+
+    def _run_of(self, line: Line) -> tuple[Vec, Vec | None] | None:
         """Returns the step along which a line runs on, and the other one; None for what ends in its copy."""
-        if not isinstance(curve, Line):
-            return None
-        way = curve.end[0] - curve.start[0], curve.end[1] - curve.start[1]
+        way = line.derivative(0.0)
         for along, other in ((self.step, self.row), (self.row, self.step)):
             if along is None:
                 continue
@@ -140,11 +144,8 @@ class Lattice:
                 return along, other
         return None
 
-    def run_together(self, line: Line, box: Bounds) -> Iterator[Line]:
+    def _run_together(self, line: Line, along: Vec, other: Vec | None, box: Bounds) -> Iterator[Line]:
         """Yields the lines that the copies of one are together, as far as they may lie in a box."""
-        found = self.run_of(line)
-        assert found is not None
-        along, other = found
         length = math.hypot(*along)
         unit = along[0] / length, along[1] / length
         x, y = line.start[0] + self.offset[0], line.start[1] + self.offset[1]
@@ -167,7 +168,7 @@ class Lattice:
 
 def tiled_strokes(cell: Sequence[Piece], region: Region, lattice: Lattice, *, whole: bool) -> list[Piece]:
     """Returns the strokes of all copies that lie inside; with `whole` of those that lie inside wholly."""
-    single, running = _told_apart(cell, lattice, region.box) if not whole else (cell, [])
+    single, running = lattice.told_apart(cell, region.box) if not whole else (cell, [])
     pieces = [p for one in clipped_each(running, region) for p in one.inner]
     if not single:
         return pieces
@@ -199,7 +200,7 @@ def tiled_bars(cell: Sequence[Piece], region: Region, lattice: Lattice, width: f
     """Returns what lies inside of all copies of strokes drawn with a pen of a width."""
     left, bottom, right, top = region.box
     box = left - width, bottom - width, right + width, top + width
-    single, strokes = _told_apart(cell, lattice, box)
+    single, strokes = lattice.told_apart(cell, box)
     if single:
         strokes += [_moved(c, way) for way in lattice.ways(*_reach(single, box)) for c in single]
     return common(region, thick(strokes, width, "square")) if strokes else Region()
@@ -221,13 +222,6 @@ def _anchor(region: Region, step: Vec, sense: float, *, is_middle: bool) -> Vec:
 
 
 # --- Copies ------------------------------------------------------------------------------------------
-
-
-def _told_apart(cell: Sequence[Piece], lattice: Lattice, box: Bounds) -> tuple[list[Piece], list[Piece]]:
-    """Returns the curves that end in their copy, and the lines that the others are together in a box."""
-    single = [c for c in cell if lattice.run_of(c) is None]
-    running = [c for c in cell if isinstance(c, Line) and lattice.run_of(c) is not None]
-    return single, [line for c in running for line in lattice.run_together(c, box)]
 
 
 def _sorted(cell: Sequence[Piece], region: Region, lattice: Lattice) -> tuple[list[Vec], list[Vec]]:
