@@ -220,7 +220,7 @@ def _compared(comparison: Comparison, evaluate: Callable[..., float]) -> str:
 
 def measured(kind: str, regions: Sequence[Region], size: float) -> float:
     """Returns a measurement of what is drawn; `size` is that of the drawing."""
-    from aidl_lang.geometry.boolean import clearance, overlap_area
+    from aidl_lang.geometry.boolean import clearance, common
 
     match kind:
         case "area":
@@ -230,7 +230,7 @@ def measured(kind: str, regions: Sequence[Region], size: float) -> float:
         case "clearance":
             return clearance(*regions)
         case _:
-            return float(overlap_area(*regions) > _TOLERANCE * size)
+            return float(common(*regions).area > _TOLERANCE * size)
 
 
 class _Measure:

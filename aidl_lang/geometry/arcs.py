@@ -386,7 +386,7 @@ def _slit(sides: Sequence[Piece], cut: float, end: Vec, beyond: float) -> Slit |
     a, tip, b = sides
     if not isinstance(a, Line) or not isinstance(b, Line):
         return None
-    (ax, ay), (bx, by) = ((s.end[0] - s.start[0], s.end[1] - s.start[1]) for s in (a, b))
+    (ax, ay), (bx, by) = a.way, b.way
     long, other = math.hypot(ax, ay), math.hypot(bx, by)
     across = (b.start[0] - a.end[0], b.start[1] - a.end[1])
     # Material lies to the left of an outline, so that the way around a gap turns to the right.

@@ -189,14 +189,9 @@ def common(a: Region, *others: Region) -> Region:
     return _combined((a, *others), lambda base, *sections: base & union(sections))
 
 
-def overlap_area(a: Region, b: Region) -> float:
-    """Returns the area of the intersection of two regions, mm²."""
-    return common(a, b).area
-
-
 def clearance(a: Region, b: Region) -> float:
     """Returns the least distance of two regions, mm; 0 where they meet, infinite if one is empty."""
-    if not _lie_apart(a, b) and overlap_area(a, b) > 0:
+    if not _lie_apart(a, b) and common(a, b).area > 0:
         return 0.0
     closest = region_distance(a, b)
     return closest[0] if closest else float("inf")

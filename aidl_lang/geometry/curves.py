@@ -154,14 +154,18 @@ class Line(_Curve):
         found: Floats = start + np.multiply.outer(t, end - start)
         return found
 
-    def derivative(self, t: float) -> Vec:
+    @property
+    def way(self) -> Vec:
         return self.end[0] - self.start[0], self.end[1] - self.start[1]
+
+    def derivative(self, t: float) -> Vec:
+        return self.way
 
     def reversed(self) -> Line:
         return Line(self.end, self.start)
 
     def nearest(self, p: Vec) -> float:
-        dx, dy = self.derivative(0.0)
+        dx, dy = self.way
         square = dx * dx + dy * dy
         if square == 0:
             return 0.0

@@ -13,6 +13,7 @@ from aidl_lang.common.colors import css_color
 from aidl_lang.common.diagnostics import Diagnostic, by_statement, ordered
 from aidl_lang.common.records import record
 from aidl_lang.common.running import Later
+from aidl_lang.geometry import legibility
 from aidl_lang.geometry.bodies import (
     Bodies,
     Clips,
@@ -35,16 +36,6 @@ from aidl_lang.geometry.bodies import (
 from aidl_lang.geometry.boolean import Contact, Contacts, Solid, contacts, lettered_region
 from aidl_lang.geometry.curves import Bounds, Piece, has_extent, larger_side, union_bounds, usable
 from aidl_lang.geometry.faces import ENGRAVED, Shape, own_faces, region_of, union_of
-from aidl_lang.geometry.legibility import (
-    COVERED,
-    Ground,
-    colliding_notes,
-    covered_note,
-    crossing_notes,
-    lettering_note,
-    overhanging_notes,
-    unseen_note,
-)
 from aidl_lang.geometry.network import GRID, Network, with_finer_chords
 from aidl_lang.geometry.notes import (
     detached_notes,
@@ -238,14 +229,14 @@ def draw(model: SolvedModel) -> tuple[Drawing, Findings]:
     )
     areas = dict(_areas(root, shapes, aside, walk, masses, ink[0], styles, order))
     lying = [*solids, *(area.seen for area in areas.values())]
-    ground = Ground(network, sorted(lying, key=lambda body: body.place), *ink, order)
+    ground = legibility.Ground(network, sorted(lying, key=lambda body: body.place), *ink, order)
     strokes = tuple(_strokes(root, shapes, engraved, walk, areas, styles, regions, ground))
     drawn = {s.path for s in strokes} | {path for path, region in regions.items() if region}
     empty = list(empty_clips(root, drawn))
 
     def everything() -> list[Diagnostic]:
         paths = [b.path for b in bodies]
-        notes = [*unusable, *map(gap_note, gaps), *crossing_notes(network, root, shapes)]
+        notes = [*unusable, *map(gap_note, gaps), *legibility.crossing_notes(network, root, shapes)]
         notes += [
             upright_note(s)
             for s in root.walk()
@@ -258,8 +249,8 @@ def draw(model: SolvedModel) -> tuple[Drawing, Findings]:
         notes += piece_notes(root, walk, masses, solids, touching.near())
         notes += _unseen(root, shapes, styles, ground)
         notes += _covered_letters(root, walk, masses, ground)
-        notes += overhanging_notes(root, bodies, strokes)
-        notes += colliding_notes(root, strokes, network.tolerance)
+        notes += legibility.overhanging_notes(root, bodies, strokes)
+        notes += legibility.colliding_notes(root, strokes, network.tolerance)
         if any(body.style.material for body in bodies):
             from aidl_lang.geometry.walls import thin_wall_notes
 
@@ -367,7 +358,7 @@ def _root_masses(walk: Bodies, root: SolvedStructure) -> list[Mass]:
 
 
 def _covered_letters(
-    root: SolvedStructure, walk: Bodies, masses: list[Mass], ground: Ground
+    root: SolvedStructure, walk: Bodies, masses: list[Mass], ground: legibility.Ground
 ) -> Iterator[Diagnostic]:
     """Warnings about letters of solids and holes that later bodies lie over."""
     # The masses of an assembly follow its own.
@@ -376,8 +367,8 @@ def _covered_letters(
         for face in walk.faces.get(structure.path, ()) if structure.path in place else ():
             if all(g.type == LETTERING for g in face.geometries):
                 share, by = ground.hidden_part(face.section, place[structure.path])
-                if share >= COVERED:
-                    yield lettering_note(structure, face.geometries[0], share, by)
+                if share >= legibility.COVERED:
+                    yield legibility.lettering_note(structure, face.geometries[0], share, by)
 
 
 def _strokes(
@@ -388,7 +379,7 @@ def _strokes(
     areas: _Areas,
     styles: dict[str, Style],
     regions: dict[str, Region],
-    ground: Ground,
+    ground: legibility.Ground,
 ) -> Iterator[Stroke]:
     """Yields the curves of drawings, and those of other structures that bound nothing."""
     loose = {f.structure.path: f.curves for f in walk.findings if isinstance(f, LooseCurves)}
@@ -418,7 +409,7 @@ def _inked(
     drawing: SolvedStructure,
     shapes: list[Shape],
     style: Style,
-    ground: Ground,
+    ground: legibility.Ground,
     areas: _Areas,
     *,
     is_own: bool,
@@ -456,7 +447,7 @@ def _is_seen(
 
 
 def _unseen(
-    root: SolvedStructure, shapes: _Shapes, styles: dict[str, Style], ground: Ground
+    root: SolvedStructure, shapes: _Shapes, styles: dict[str, Style], ground: legibility.Ground
 ) -> Iterator[Diagnostic]:
     """Yields warnings on strokes in the colour below, and under a body unless one of their array shows."""
     own = _colored_drawings(root)
@@ -473,15 +464,15 @@ def _unseen(
                 seen.add(shape.geometry.name.partition("[")[0])
             if by is None and shape.geometry.type == LETTERING:
                 share, over_it = ground.covered_part(numbers, place)
-                if share >= COVERED:
-                    yield lettering_note(drawing, shape.geometry, share, over_it)
+                if share >= legibility.COVERED:
+                    yield legibility.lettering_note(drawing, shape.geometry, share, over_it)
             is_asked = drawing.path in own or "color" in shape.geometry.attributes
             if is_asked and look.color and ground.hides(look.color, numbers, place, wholly=True):
                 lost.setdefault(look.color, []).append(shape.geometry.name)
-        yield from (unseen_note(drawing, names, color) for color, names in lost.items())
+        yield from (legibility.unseen_note(drawing, names, color) for color, names in lost.items())
         for by, names in covered.items():
             if whole := [name for name in names if name.partition("[")[0] not in seen]:
-                yield covered_note(drawing, whole, by)
+                yield legibility.covered_note(drawing, whole, by)
 
 
 def _areas(

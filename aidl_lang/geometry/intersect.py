@@ -258,9 +258,7 @@ def _plain(a: Piece, b: Piece, tolerance: float) -> list[Crossing]:
 
 
 def _line_line(a: Line, b: Line, tolerance: float) -> list[Crossing]:
-    (x0, y0), (x1, y1) = a.start, a.end
-    (u0, v0), (u1, v1) = b.start, b.end
-    ax, ay, bx, by = x1 - x0, y1 - y0, u1 - u0, v1 - v0
+    (x0, y0), (u0, v0), (ax, ay), (bx, by) = a.start, b.start, a.way, b.way
     cross = ax * by - ay * bx
     if abs(cross) <= 1e-9 * math.hypot(ax, ay) * math.hypot(bx, by):
         return []
@@ -275,7 +273,7 @@ def _line_line(a: Line, b: Line, tolerance: float) -> list[Crossing]:
 
 def line_circle(line: Line, circle: Arc | Circle, tolerance: float) -> list[Vec]:
     (x, y), r = circle.center, circle.radius
-    dx, dy = line.end[0] - line.start[0], line.end[1] - line.start[1]
+    dx, dy = line.way
     length = math.hypot(dx, dy)
     if not length:
         return []

@@ -135,7 +135,7 @@ class Lattice:
 
     def _run_of(self, line: Line) -> tuple[Vec, Vec | None] | None:
         """Returns the step along which a line runs on, and the other one; None for what ends in its copy."""
-        way = line.derivative(0.0)
+        way = line.way
         for along, other in ((self.step, self.row), (self.row, self.step)):
             if along is None:
                 continue

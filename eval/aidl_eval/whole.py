@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from aidl_eval.regions import Regions
-from aidl_lang.geometry.boolean import common, overlap_area, region_distance
+from aidl_lang.geometry.boolean import common, region_distance
 from aidl_lang.geometry.curves import Line, inward
 from aidl_lang.geometry.nearness import near_pairs
 from aidl_lang.geometry.region import Face, Loop, Region, measure, polygon_area
@@ -57,7 +57,7 @@ def symmetry(whole: Region) -> float:
     if not whole:
         return math.nan
     x = measure(whole).centroid[0]
-    return overlap_area(_seen(whole, x, mirrored=False), _seen(whole, x, mirrored=True)) / whole.area
+    return common(_seen(whole, x, mirrored=False), _seen(whole, x, mirrored=True)).area / whole.area
 
 
 def _seen(region: Region, x: float, *, mirrored: bool) -> Region:

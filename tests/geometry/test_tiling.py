@@ -155,7 +155,7 @@ def test_ten_thousand_copies_are_made_and_no_more() -> None:
     assert len(found.faces) == 98 * 98
     with pytest.raises(TooManyCopiesError) as many:
         tiled_areas(disc(0.4), rectangle(200, 99), Lattice((1, 0), (0, 1)), whole=True)
-    assert many.value.count > MOST
+    assert many.value.args[0] > MOST
 
 
 @pytest.mark.parametrize("row", [(2.0, 0.0), (0.0, 0.0)])

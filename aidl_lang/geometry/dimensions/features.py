@@ -145,7 +145,7 @@ def unit(a: Vec, b: Vec) -> Vec | None:
 
 def foot(p: Vec, line: Line) -> Vec:
     """Returns the point of an endless line that is nearest to a point."""
-    dx, dy = line.end[0] - line.start[0], line.end[1] - line.start[1]
+    dx, dy = line.way
     square = dx * dx + dy * dy
     t = ((p[0] - line.start[0]) * dx + (p[1] - line.start[1]) * dy) / square if square else 0.0
     return line.start[0] + t * dx, line.start[1] + t * dy
@@ -172,8 +172,7 @@ def angle_of(a: Line, b: Line, degrees: float) -> Opening | None:
 
 def meeting(a: Line, b: Line) -> Vec | None:
     """Returns the crossing of two endless lines; None if they are parallel."""
-    ux, uy = a.end[0] - a.start[0], a.end[1] - a.start[1]
-    vx, vy = b.end[0] - b.start[0], b.end[1] - b.start[1]
+    (ux, uy), (vx, vy) = a.way, b.way
     cross = ux * vy - uy * vx
     if abs(cross) <= _FLAT * math.hypot(ux, uy) * math.hypot(vx, vy):
         return None
@@ -183,7 +182,7 @@ def meeting(a: Line, b: Line) -> Vec | None:
 
 def _arm(line: Line, side: float, corner: Vec) -> tuple[float, tuple[float, float]]:
     """Returns the direction of a line to one side, and the stretch in which it is drawn there."""
-    ux, uy = side * (line.end[0] - line.start[0]), side * (line.end[1] - line.start[1])
+    ux, uy = side * line.way[0], side * line.way[1]
     reach = math.hypot(ux, uy)
     u = ux / reach, uy / reach
     along = sorted(dot((p[0] - corner[0], p[1] - corner[1]), u) for p in (line.start, line.end))
