@@ -18,7 +18,7 @@ from aidl_lang.export.profiles import CUTS, ENGRAVE, FILL, INNER, OUTER, PLAIN, 
 from aidl_lang.geometry.boolean import united
 from aidl_lang.geometry.curves import Piece, larger_side, union_bounds
 from aidl_lang.geometry.drawing import SLIT, Body, Drawing, Stroke
-from aidl_lang.geometry.nearness import inside, near_pairs
+from aidl_lang.geometry.intersect import inside, near_pairs
 from aidl_lang.geometry.network import RELATIVE_TOLERANCE, Weld
 from aidl_lang.geometry.region import Face, Loop, Region
 from aidl_lang.geometry.solved import SolvedModel

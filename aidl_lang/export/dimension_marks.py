@@ -18,7 +18,7 @@ from aidl_lang.export.marks import DIMENSION, Area, Block, Curves, Ink, Mark, Te
 from aidl_lang.geometry.curves import Arc, Bounds, Circle, Line, Piece, Vec, union_bounds
 from aidl_lang.geometry.dimensions.features import dot
 from aidl_lang.geometry.drawing import Drawing
-from aidl_lang.geometry.nearness import from_sides
+from aidl_lang.geometry.intersect import from_sides
 from aidl_lang.geometry.solved import Dimension, Length, Opening, Roundness
 
 # --- The marks of one dimension at a given place, in the manner of ISO 129-1: extension lines, a dimension

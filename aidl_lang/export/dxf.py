@@ -21,7 +21,7 @@ from aidl_lang.export.marks import Text
 from aidl_lang.export.overlay import labels
 from aidl_lang.export.profiles import FILL, ON_PARTS, PLAIN, SCORE, Look
 from aidl_lang.geometry.arcs import as_arcs
-from aidl_lang.geometry.curves import TAU, Arc, Bezier, Circle, Ellipse, EllipseArc, Line, Piece, Vec
+from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, EllipseArc, Line, Piece, Vec
 from aidl_lang.geometry.drawing import Drawing
 from aidl_lang.geometry.styles import Style
 
@@ -345,7 +345,7 @@ class _Entities:
     def _arc(self, arc: Arc, attributes: dict[str, Any]) -> Any:
         """Adds an arc; DXF runs from the first angle to the last counter-clockwise."""
         center, radius = self._at(arc.center), self._rounded(arc.radius)
-        if abs(arc.sweep) >= TAU:
+        if abs(arc.sweep) >= math.tau:
             return self._space.add_circle(center, radius, dxfattribs=attributes)
         first, last = (
             math.degrees(math.atan2(p[1] - arc.center[1], p[0] - arc.center[0])) % 360
@@ -358,15 +358,15 @@ class _Entities:
         major, minor, angle = piece.rx, piece.ry, piece.angle
         first, sweep = piece.range
         if minor > major:
-            major, minor, angle, first = minor, major, angle + TAU / 4, first - TAU / 4
+            major, minor, angle, first = minor, major, angle + math.tau / 4, first - math.tau / 4
         if sweep < 0:
             first, sweep = first + sweep, -sweep
-        whole = sweep >= TAU
+        whole = sweep >= math.tau
         return self._space.add_ellipse(
             self._at(piece.center),
             self._at((major * math.cos(angle), major * math.sin(angle))),
             max(minor / major, THINNEST),
-            0.0 if whole else first % TAU,
-            TAU if whole else (first + sweep) % TAU,
+            0.0 if whole else first % math.tau,
+            math.tau if whole else (first + sweep) % math.tau,
             dxfattribs=attributes,
         )

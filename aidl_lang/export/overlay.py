@@ -18,7 +18,7 @@ from aidl_lang.export.job import Job
 from aidl_lang.export.marks import CHARACTER, Dot, Frame, Mark, Text, widened
 from aidl_lang.geometry.curves import Bounds, Vec, are_near, union_bounds
 from aidl_lang.geometry.drawing import Body, Drawing
-from aidl_lang.geometry.nearness import from_sides, inside
+from aidl_lang.geometry.intersect import from_sides, inside
 from aidl_lang.geometry.region import COARSE, Region, piece_points
 from aidl_lang.geometry.solved import ConstraintReport, SolvedGeometry, SolvedModel, SolvedStructure
 

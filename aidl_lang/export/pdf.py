@@ -35,7 +35,7 @@ from aidl_lang.export.marks import (
     spaced,
 )
 from aidl_lang.export.svg import to_svg
-from aidl_lang.geometry.curves import TAU, Bezier, Bounds, Circle, Line, Piece, Vec
+from aidl_lang.geometry.curves import Bezier, Bounds, Circle, Line, Piece, Vec
 from aidl_lang.version import __version__
 
 # --- The font of texts in pictures, for formats that embed it.
@@ -106,7 +106,7 @@ def to_png(picture: Picture, pixels: int) -> bytes:
 POINTS_PER_MM = 72 / 25.4
 LONGEST = 14_400 / POINTS_PER_MM
 """Sides of pages end here (PDF 32000-1, annex C)."""
-_STEP = TAU / 16
+_STEP = math.tau / 16
 _FILLED_AND_STROKED = 2
 _WHITE = "#ffffff"
 _LAYERS = 40

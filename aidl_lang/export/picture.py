@@ -35,7 +35,7 @@ from aidl_lang.export.overlay import explain, labels
 from aidl_lang.geometry.boolean import united, without
 from aidl_lang.geometry.curves import Bounds, Line, Piece, Vec, larger_side, union_bounds
 from aidl_lang.geometry.drawing import Body, Drawing, Stroke
-from aidl_lang.geometry.nearness import inside
+from aidl_lang.geometry.intersect import inside
 from aidl_lang.geometry.region import Polygon, Region, piece_points
 from aidl_lang.geometry.solved import SolvedModel, SolvedStructure
 from aidl_lang.geometry.styles import DASH, GAP, Shade, Style, layers, stacked, united_parts

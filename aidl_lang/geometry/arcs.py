@@ -16,8 +16,8 @@ import numpy as np
 
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
-from aidl_lang.geometry.curves import TAU, Arc, Bezier, Circle, Floats, Line, Piece, Vec, turn_between
-from aidl_lang.geometry.nearness import from_sides
+from aidl_lang.geometry.curves import Arc, Bezier, Circle, Floats, Line, Piece, Vec, turn_between
+from aidl_lang.geometry.intersect import from_sides
 from aidl_lang.geometry.region import Face, Loop, Region, length
 
 SHORTEST = 3.0
@@ -313,7 +313,7 @@ def _distances(piece: Piece, spots: Floats) -> Floats:
     assert isinstance(piece, Arc)
     from_center = spots - piece.center
     turned = np.arctan2(from_center[:, 1], from_center[:, 0]) - piece.start_angle
-    turned = np.mod(turned * math.copysign(1.0, piece.sweep), TAU)
+    turned = np.mod(turned * math.copysign(1.0, piece.sweep), math.tau)
     off: Floats = np.abs(np.hypot(*from_center.T) - piece.radius)
     at_ends = np.minimum(np.hypot(*(spots - (x0, y0)).T), np.hypot(*(spots - (x1, y1)).T))
     return np.where(turned <= abs(piece.sweep), off, at_ends)

@@ -11,9 +11,9 @@ from itertools import count
 from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.prose import named
 from aidl_lang.common.records import record
-from aidl_lang.geometry.curves import TAU, Arc, Bezier, Line, Piece, Vec, larger_side
+from aidl_lang.geometry.curves import Arc, Bezier, Line, Piece, Vec, larger_side
 from aidl_lang.geometry.faces import OwnFace, OwnFaces, Shape, own_faces, union_of
-from aidl_lang.geometry.nearness import near_pairs
+from aidl_lang.geometry.intersect import near_pairs
 from aidl_lang.geometry.network import Network
 from aidl_lang.geometry.sections import Section, Traced, trace_all, union
 from aidl_lang.geometry.solved import SolvedGeometry, SolvedStructure, as_geometry
@@ -587,7 +587,7 @@ def _way(p: Vec, q: Vec) -> Vec:
 def _arc_through(arc: Arc, start: Vec, end: Vec, widest: float) -> Arc | None:
     """Returns the arc between two points whose centre is nearest to that of another, and not far from it."""
     if start == end:
-        return replace(arc, start=start, end=end, sweep=math.copysign(TAU, arc.sweep))
+        return replace(arc, start=start, end=end, sweep=math.copysign(math.tau, arc.sweep))
     (x, y), (cx, cy), (dx, dy) = start, arc.center, _way(start, end)
     chord = math.hypot(dx, dy)
     off = ((cx - (x + end[0]) / 2) * dx + (cy - (y + end[1]) / 2) * dy) / chord
@@ -596,5 +596,5 @@ def _arc_through(arc: Arc, start: Vec, end: Vec, widest: float) -> Arc | None:
     if math.dist(center, arc.center) > 2 * widest or abs(radius - arc.radius) > 2 * widest:
         return None
     first, last = (math.atan2(p[1] - center[1], p[0] - center[0]) for p in (start, end))
-    sweep = arc.sweep + math.remainder(last - first - arc.sweep, TAU)
-    return Arc(center, radius, start, end, sweep) if 0 < abs(sweep) < TAU else None
+    sweep = arc.sweep + math.remainder(last - first - arc.sweep, math.tau)
+    return Arc(center, radius, start, end, sweep) if 0 < abs(sweep) < math.tau else None

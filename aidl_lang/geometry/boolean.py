@@ -13,32 +13,11 @@ import numpy as np
 
 from aidl_lang.common.records import record
 from aidl_lang.common.running import Later, checkpoint
-from aidl_lang.geometry.curves import (
-    Arc,
-    Bezier,
-    Bounds,
-    Circle,
-    Floats,
-    Line,
-    Piece,
-    Vec,
-    larger_side,
-    union_bounds,
-)
-from aidl_lang.geometry.intersect import Crossing, Table, all_intersections, meet
-from aidl_lang.geometry.nearness import inside, near_pairs, near_rows
+from aidl_lang.geometry.curves import Arc, Bezier, Circle, Floats, Line, Piece, Vec, larger_side, union_bounds
+from aidl_lang.geometry.intersect import Crossing, Table, all_intersections, inside, meet, near_rows
 from aidl_lang.geometry.network import CHORD, RELATIVE_TOLERANCE, Hulls, Network
 from aidl_lang.geometry.region import Face, Loop, Region
-from aidl_lang.geometry.sections import (
-    NEGLIGIBLE,
-    Section,
-    arranged,
-    closed_loop,
-    faces_of,
-    filled,
-    trace,
-    union,
-)
+from aidl_lang.geometry.sections import Section, arranged, closed_loop, faces_of, filled, trace, union
 
 if TYPE_CHECKING:
     from aidl_lang.common.font_files import Curve
@@ -296,7 +275,7 @@ def clipped_each(curves: Sequence[Piece], region: Region, *, with_border: bool =
 
 
 def stretches_beside(
-    curves: Sequence[Piece], borders: Sequence[Piece], boxes: Floats | Sequence[Bounds], tolerance: float
+    curves: Sequence[Piece], borders: Sequence[Piece], boxes: Floats, tolerance: float
 ) -> list[list[Stretch]]:
     """Returns the parts of each curve between some borders; `boxes`: of the curves, then the borders."""
     every, count = [*curves, *borders], len(curves)
@@ -373,8 +352,6 @@ ALL_PAIRS = 24
 NEAR = 0.05
 UNNOTICED = 1e-3
 """A gap in mm that nobody who makes the parts will see: flanks of gears are a little less than touching."""
-_THIN = 100 * NEGLIGIBLE
-"""Width of an area below which it may be but the difference of curves and chords, so that it is traced."""
 
 Relation = Literal["touching", "apart", "overlapping"]
 
@@ -425,7 +402,7 @@ def contacts(network: Network, solids: Sequence[Solid]) -> Contacts:
 
     def near() -> tuple[tuple[str, str], ...]:
         reach = max(UNNOTICED, network.tolerance)
-        pairs = sorted(near_pairs([solid.region.box for solid in solids], reach + network.tolerance))
+        pairs = sorted(near_rows([s.region.box for s in solids], reach + network.tolerance).tolist())
         couples = ((solids[i], solids[j]) for i, j in pairs)
         return tuple(
             (a.path, b.path)
@@ -436,7 +413,7 @@ def contacts(network: Network, solids: Sequence[Solid]) -> Contacts:
     def everything() -> tuple[Contact, ...]:
         pairs: Iterable[tuple[int, int]] = combinations(range(len(solids)), 2)
         if len(solids) > ALL_PAIRS:
-            pairs = sorted(near_pairs([solid.region.box for solid in solids], NEAR * network.size))
+            pairs = sorted(near_rows([s.region.box for s in solids], NEAR * network.size).tolist())
         return tuple(_compare(network, solids[i], solids[j]) for i, j in pairs)
 
     return Contacts(tuple((s.path, s.region) for s in solids), Later(near), Later(everything))
@@ -447,9 +424,7 @@ def _shared(network: Network, a: Solid, b: Solid, *, exactly: bool) -> float:
     common = a.section & b.section
     if common.is_nothing:
         return 0.0
-    left, bottom, right, top = common.box
-    thin = _THIN * common.num_contour() * ((right - left) + (top - bottom))
-    return common.area if common.area > thin and not exactly else trace(network, common).region.area
+    return trace(network, common).region.area if exactly or common.is_thin else common.area
 
 
 def _compare(network: Network, a: Solid, b: Solid) -> Contact:
@@ -517,11 +492,11 @@ def _bridges(region: Region, counter: Loop, width: float, beyond: float) -> Iter
     """Yields the areas of a letter to be taken away for a counter. They reach `beyond` the far side of a
     stroke, which may be slanted, but no further than half of the way to the next one.
     """
-    left, low, right, high = Region((Face(counter),)).box
+    left, low, right, high = counter.box
     x, middle = (left + right) / 2, (low + high) / 2
     _, bottom, _, top = region.box
     line = _rectangle(x - 1e-3 * width, bottom - width, x + 1e-3 * width, top + width)
-    strokes = sorted(Region((face,)).box[1::2] for face in common(region, line).faces)
+    strokes = sorted(face.outer.box[1::2] for face in common(region, line).faces)
     above = [stroke for stroke in strokes if stroke[0] > middle]
     below = [stroke for stroke in reversed(strokes) if stroke[1] < middle]
     if above:

@@ -11,8 +11,8 @@ import numpy as np
 
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
-from aidl_lang.geometry.curves import TAU, Arc, Circle, Ellipse, Floats, Ints, Line, Mask, Piece, Vec
-from aidl_lang.geometry.nearness import windows
+from aidl_lang.geometry.curves import Arc, Circle, Ellipse, Floats, Ints, Line, Mask, Piece, Vec
+from aidl_lang.geometry.intersect import windows
 from aidl_lang.geometry.region import Loop, Region
 
 # --- The outline of a region as straight and round elements in arrays, to be searched for chords (`walls`).
@@ -131,12 +131,12 @@ class Skeleton:
         """Returns the corner where a piece ends. Its parameter 2 says that it is fixed there."""
         one, other = self.pieces[number], self.pieces[after]
         arriving, leaving = direction(one, 1.0), direction(other, 0.0)
-        turn = math.remainder(leaving - arriving, TAU)
+        turn = math.remainder(leaving - arriving, math.tau)
         if abs(turn) > math.pi - _CUSP:
             # A cusp: which side it is on shows a little away from it.
             (x, y), (x0, y0), (x1, y1) = one.ends[1], one.point(1 - 1e-3), other.point(1e-3)
             nearby = math.atan2(y1 - y, x1 - x) - math.atan2(y - y0, x - x0)
-            turn = math.copysign(turn, math.remainder(nearby, TAU))
+            turn = math.copysign(turn, math.remainder(nearby, math.tau))
         return _bend(number, 2.0, one.ends[1], arriving, turn)
 
 
@@ -159,7 +159,7 @@ def _chopped(number: int, piece: Piece) -> Iterator[Bit]:
     if not piece.is_closed:
         angles = [*angles, direction(piece, 1.0)]
     for k, (arriving, leaving) in enumerate(zip(around, angles, strict=False)):
-        yield _bend(number, float(ts[k]), spots[k], arriving, math.remainder(leaving - arriving, TAU))
+        yield _bend(number, float(ts[k]), spots[k], arriving, math.remainder(leaving - arriving, math.tau))
 
 
 def _turned(piece: Piece) -> Piece:
@@ -184,7 +184,7 @@ def direction(piece: Piece, t: float) -> float:
 
 def within(angle: Floats | float, middle: Floats, half: Floats, slack: float) -> Mask:
     """Tells whether directions lie in ranges, up to some radians."""
-    away = np.abs((angle - middle + math.pi) % TAU - math.pi)
+    away = np.abs((angle - middle + math.pi) % math.tau - math.pi)
     return away <= half + slack
 
 

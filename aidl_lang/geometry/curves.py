@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import fields, replace
 from operator import attrgetter
 from typing import Any, ClassVar, Self, TypeAlias, get_args
@@ -20,7 +20,6 @@ Ints: TypeAlias = NDArray[np.intp]
 Mask: TypeAlias = NDArray[np.bool_]
 Bounds = tuple[float, float, float, float]
 
-TAU = 2 * math.pi
 _SAMPLES = 32
 _SAMPLED = np.linspace(0, 1, _SAMPLES + 1)
 
@@ -295,7 +294,7 @@ class _Round(_Curve):
         c, s = math.cos(angle), math.sin(angle)
         across = math.atan2(-ry * s, rx * c)
         along = math.atan2(ry * c, rx * s)
-        turn = math.copysign(TAU, sweep)
+        turn = math.copysign(math.tau, sweep)
         return [((a - first) % turn) / sweep for a in (across, across + math.pi, along, along + math.pi)]
 
 
@@ -312,11 +311,11 @@ class _Circular(_Round):
     def nearest(self, p: Vec) -> float:
         (x, y), *_, first, sweep = self.frame
         angle = math.atan2(p[1] - y, p[0] - x)
-        t = ((angle - first) % math.copysign(TAU, sweep)) / sweep
+        t = ((angle - first) % math.copysign(math.tau, sweep)) / sweep
         if t <= 1:
             return t
         # Off the arc: the nearer end, halfway round the gap.
-        return 1.0 if t < (1 + TAU / abs(sweep)) / 2 else 0.0
+        return 1.0 if t < (1 + math.tau / abs(sweep)) / 2 else 0.0
 
     def part(self, t0: float, t1: float, start: Vec, end: Vec) -> Self | Arc:
         if self.is_closed and abs(t1 - t0) >= 1:
@@ -364,7 +363,7 @@ class Circle(_Circular):
 
     @property
     def frame(self) -> tuple[Vec, float, float, float, float, float]:
-        return self.center, self.radius, self.radius, 0.0, 0.0, TAU
+        return self.center, self.radius, self.radius, 0.0, 0.0, math.tau
 
     @property
     def box(self) -> Bounds:
@@ -381,7 +380,7 @@ class _Elliptic(_Round):
         if self.is_closed and abs(t1 - t0) >= 1:
             return self
         center, rx, ry, angle, first, sweep = self.frame
-        first = math.remainder(first + t0 * sweep, TAU)
+        first = math.remainder(first + t0 * sweep, math.tau)
         return EllipseArc(center, rx, ry, angle, start, end, first, (t1 - t0) * sweep)
 
 
@@ -398,7 +397,7 @@ class Ellipse(_Elliptic):
 
     @property
     def frame(self) -> tuple[Vec, float, float, float, float, float]:
-        return self.center, self.rx, self.ry, self.angle, 0.0, TAU
+        return self.center, self.rx, self.ry, self.angle, 0.0, math.tau
 
 
 @record(slots=True)
@@ -514,6 +513,11 @@ def union_bounds(boxes: Sequence[Bounds]) -> Bounds:
 
 def larger_side(box: Bounds) -> float:
     return max(box[2] - box[0], box[3] - box[1])
+
+
+def extent(curves: Iterable[Piece]) -> float:
+    """Returns the larger side of what some curves cover, 1 if that is nothing."""
+    return larger_side(union_bounds([curve.box for curve in curves])) or 1.0
 
 
 def usable(curve: Piece) -> Piece | None:

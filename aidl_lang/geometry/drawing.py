@@ -37,15 +37,8 @@ from aidl_lang.geometry.boolean import Contact, Contacts, Solid, contacts, lette
 from aidl_lang.geometry.curves import Bounds, Piece, has_extent, larger_side, union_bounds, usable
 from aidl_lang.geometry.faces import ENGRAVED, Shape, own_faces, region_of, union_of
 from aidl_lang.geometry.network import GRID, Network, with_finer_chords
-from aidl_lang.geometry.notes import (
-    detached_notes,
-    finding_notes,
-    gap_note,
-    stroked_note,
-    unusable_note,
-    upright_note,
-)
-from aidl_lang.geometry.pieces import LETTERING, piece_notes
+from aidl_lang.geometry.notes import finding_notes, gap_note, stroked_note, unusable_note, upright_note
+from aidl_lang.geometry.pieces import LETTERING, detached_notes, piece_notes
 from aidl_lang.geometry.region import Face, Measures, Region, measure
 from aidl_lang.geometry.sections import Section, Traced, fill, trace, trace_all, union
 from aidl_lang.geometry.solved import Frame, SolvedGeometry, SolvedModel, SolvedStructure

@@ -11,20 +11,9 @@ from typing import TYPE_CHECKING, TypeAlias
 from aidl_lang.building.model import Geometry
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
-from aidl_lang.geometry.curves import (
-    Arc,
-    Bezier,
-    Circle,
-    Ellipse,
-    EllipseArc,
-    Floats,
-    Line,
-    Piece,
-    Vec,
-    image,
-)
+from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, EllipseArc, Line, Piece, Vec, image
 from aidl_lang.geometry.network import Joined, Network, Use, with_finer_chords
-from aidl_lang.geometry.region import Region, polygon_area
+from aidl_lang.geometry.region import Polygon, Region, polygon_area
 from aidl_lang.geometry.sections import Section, fill, trace, union
 from aidl_lang.geometry.solved import Scalar, SolvedGeometry, described
 
@@ -348,7 +337,7 @@ def _walk(network: Network, first: Use, ways: dict[int, list[Use]], left: dict[i
     return loop
 
 
-def _outlines(network: Network, uses: Iterable[Use]) -> tuple[list[Floats], set[int]]:
+def _outlines(network: Network, uses: Iterable[Use]) -> tuple[list[Polygon], set[int]]:
     """Returns the outer outline of each connected part of a planar graph, and the edges that bound some face
     of it.
 
@@ -357,7 +346,7 @@ def _outlines(network: Network, uses: Iterable[Use]) -> tuple[list[Floats], set[
     edges = list(dict.fromkeys(edge for edge, _ in uses))
     turn = _next_clockwise(network, edges)
     cycle_of: dict[Use, int] = {}
-    polygons: list[Floats] = []
+    polygons: list[Polygon] = []
     for start in ((edge, forward) for edge in edges for forward in (True, False)):
         if start in cycle_of:
             continue

@@ -21,8 +21,7 @@ from aidl_lang.common.source import Span
 from aidl_lang.geometry.boolean import Solid, stretches_beside
 from aidl_lang.geometry.curves import NO_LENGTH, Bounds, Line, Piece, Vec, are_near, union_bounds
 from aidl_lang.geometry.faces import Shape
-from aidl_lang.geometry.intersect import meet
-from aidl_lang.geometry.nearness import from_sides, inside
+from aidl_lang.geometry.intersect import from_sides, inside, meet
 from aidl_lang.geometry.network import GRID, Network, Use
 from aidl_lang.geometry.notes import at, local
 from aidl_lang.geometry.pieces import LETTERING
@@ -122,7 +121,7 @@ class Ground:
         near = [(p, b) for r in outlines for p, b in zip(r.pieces, r.boxes.tolist(), strict=True)]
         near = [(p, b) for p, b in near if are_near(around, b)]
         boxes += [b for _, b in near]
-        cut = stretches_beside(own, [p for p, _ in near], boxes, self.network.tolerance)
+        cut = stretches_beside(own, [p for p, _ in near], np.array(boxes), self.network.tolerance)
         parts = [(curve, stretch) for curve, of in zip(own, cut, strict=True) for stretch in of]
         holders = self._holders([curve.point(stretch.middle) for curve, stretch in parts], bodies)
         pieces = (c.part(s.t0, s.t1, s.start, s.end) for c, s in parts)

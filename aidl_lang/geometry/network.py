@@ -14,7 +14,6 @@ import numpy as np
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint, give_up
 from aidl_lang.geometry.curves import (
-    TAU,
     Bezier,
     Bounds,
     Floats,
@@ -26,8 +25,7 @@ from aidl_lang.geometry.curves import (
     larger_side,
     union_bounds,
 )
-from aidl_lang.geometry.intersect import Table, all_intersections, self_crossing, sorted_cuts
-from aidl_lang.geometry.nearness import Sides, near_rows
+from aidl_lang.geometry.intersect import Sides, Table, all_intersections, near_rows, self_crossing
 
 # --- Proofs, for many pairs of curves at once, that two curves meet at most in an end that they share.
 #
@@ -288,7 +286,7 @@ class Network:
                 for number, at in ((i, t), (j, s)):
                     if node not in own_ends[number]:
                         cuts[number].append((at, node))
-        return [self._split(i, sorted_cuts(c)) for i, c in enumerate(cuts)]
+        return [self._split(i, _sorted_cuts(c)) for i, c in enumerate(cuts)]
 
     def _ends_on_others(
         self, hulls: Hulls, pairs: Ints, own_nodes: Ints, places: Floats
@@ -485,5 +483,11 @@ def _segments(curve: Piece, share: float, chord: float) -> int:
         )
         return max(3, min(200, math.ceil(share * math.sqrt(0.75 * bend / chord))))
     _, rx, ry, *_, sweep = curve.frame
-    step = min(TAU / 32, 2 * math.acos(max(0.0, 1 - chord / max(rx, ry, chord))))
+    step = min(math.tau / 32, 2 * math.acos(max(0.0, 1 - chord / max(rx, ry, chord))))
     return max(2, min(2000, math.ceil(abs(sweep) * share / step)))
+
+
+def _sorted_cuts(cuts: list[tuple[float, int]]) -> list[tuple[float, int]]:
+    """Returns cuts in order of their parameter, a node that follows itself kept once."""
+    cuts = sorted(cuts)
+    return cuts[:1] + [b for a, b in pairwise(cuts) if b[1] != a[1]]

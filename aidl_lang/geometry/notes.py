@@ -25,7 +25,6 @@ from aidl_lang.geometry.bodies import (
     LooseCurves,
     ends_of,
 )
-from aidl_lang.geometry.boolean import Contacts
 from aidl_lang.geometry.curves import LARGEST, NO_LENGTH, Bezier, Vec, larger_side
 from aidl_lang.geometry.faces import is_winding
 from aidl_lang.geometry.network import Network
@@ -303,20 +302,6 @@ def _covered_holes(finding: CoveredHoles) -> Diagnostic:
     )
 
 
-def detached_notes(root: SolvedStructure, paths: Sequence[str], contacts: Contacts) -> list[Diagnostic]:
-    """Returns a warning for each statement with bodies that touch and overlap none of the others."""
-    free = marked_detached(root)
-    if sum(path not in free for path in paths) < 2:
-        return []  # there is nothing that a part could touch
-    held = {path for pair in contacts.near() for path in pair}
-    structures = {s.path: s for s in root.walk()}
-    lonely: dict[object, list[SolvedStructure]] = {}
-    for path in paths:
-        if path not in held and path not in free:
-            lonely.setdefault(structures[path].span or path, []).append(structures[path])
-    return [_detached(alike, contacts.nearest(alike[0].path)) for alike in lonely.values()]
-
-
 def united_notes(
     root: SolvedStructure,
     bodies: Collection[str],
@@ -355,36 +340,6 @@ def _united(
         "cuts it" if s.kind == "hole" else "united with it",
         hints=(hint.format(body.name),),
     )
-
-
-def marked_detached(root: SolvedStructure) -> set[str]:
-    """Returns the paths of structures that are `@detached`, or lie in one that is."""
-    return {
-        below.path
-        for s in root.walk()
-        if "detached" in s.attributes and s.attributes["detached"] != (False,)
-        for below in s.walk()
-    }
-
-
-def _detached(structures: Sequence[SolvedStructure], nearest: tuple[float, str]) -> Diagnostic:
-    """Returns the warning about the bodies of one statement; `nearest` is what is nearest to the first."""
-    structure, is_one = structures[0], len(structures) == 1
-    to = "" if is_one else f" to `{structure.path}`"
-    message = (
-        f"{named(s.path for s in structures)} {'touches' if is_one else 'touch'} no other part; "
-        f"the nearest{to}, `{nearest[1]}`, is {rough(nearest[0])} mm away"
-    )
-    hints = (
-        "to join them, let their borders meet: `gap: 0`, `touching(…)` or `on_top_of(…)`",
-        "if that is meant, say so: `@detached` before its definition",
-    )
-    span, fix = structure.span, None
-    is_plain = span and re.match(r"(@|[a-z]+\s+\w+\s*(\[|\(|\{|at\b|rotated\b))", span.text)
-    if span and is_plain and "detached" not in structure.attributes:
-        fix = Fix("say that it is meant", (Edit(Span(span.source, span.start, span.start), "@detached "),))
-    label = "stands by itself" if is_one else "each stands by itself"
-    return Diagnostic("W0705", message, span, label, hints=hints, fix=fix)
 
 
 def stroked_note(structure: SolvedStructure, text: SolvedGeometry) -> Diagnostic:

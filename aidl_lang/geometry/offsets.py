@@ -9,18 +9,7 @@ from itertools import pairwise
 import numpy as np
 
 from aidl_lang.common.records import record
-from aidl_lang.geometry.curves import (
-    Arc,
-    Bezier,
-    Circle,
-    Floats,
-    Line,
-    Piece,
-    Vec,
-    larger_side,
-    turn_between,
-    union_bounds,
-)
+from aidl_lang.geometry.curves import Arc, Bezier, Circle, Floats, Line, Piece, Vec, extent, turn_between
 from aidl_lang.geometry.network import Network
 from aidl_lang.geometry.region import Face, Loop, Region
 from aidl_lang.geometry.sections import Section, arranged, filled, union
@@ -208,7 +197,7 @@ def offset(region: Region, distance: float, sharp: bool = True) -> Region:
 def thick(curves: Sequence[Piece], width: float, caps: str = "round", sharp: bool = False) -> Region:
     """Returns what a pen of a width draws along curves; where more than two meet, the joint is round."""
     half = width / 2
-    near = NEAR * (larger_side(union_bounds([c.box for c in curves])) or 1.0)
+    near = NEAR * extent(curves)
     strips: list[Strip] = [s for c in curves for side in (half, -half) for s in beside(c, side)]
     for at, leaving in _joints(curves, near):
         if len(leaving) > 2:

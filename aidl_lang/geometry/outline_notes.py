@@ -10,17 +10,8 @@ from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix, Label
 from aidl_lang.common.prose import named, rough
 from aidl_lang.common.records import record
 from aidl_lang.common.source import Span
-from aidl_lang.geometry.finishing import (
-    Corner,
-    Result,
-    TooLarge,
-    Work,
-    arms_at,
-    corners_of,
-    finish,
-    largest,
-    sized,
-)
+from aidl_lang.geometry import finishing
+from aidl_lang.geometry.finishing import Corner, Result, TooLarge, Work
 from aidl_lang.geometry.notes import at, local
 from aidl_lang.geometry.solved import Finish, Leaves, Recipe, SolvedGeometry, SolvedStructure
 from aidl_lang.geometry.tiling import MOST
@@ -160,9 +151,9 @@ def no_corner(f: Finish, leaves: Leaves, near: float) -> Diagnostic:
             ),
         )
     curves = [c for _, c in leaves]
-    arms = arms_at(curves, f.at, near)
+    arms = finishing.arms_at(curves, f.at, near)
     place = f.at
-    corners = sorted(corners_of(curves, near), key=lambda c: math.dist(c.at, place))
+    corners = sorted(finishing.corners_of(curves, near), key=lambda c: math.dist(c.at, place))
     if len(arms) == 2:
         message = f"`{f.text}` at {at(f.at)} is no corner: the curves run on smoothly"
         label = "nothing to finish"
@@ -262,7 +253,7 @@ class _Fault:
     def _most(self) -> float:
         """Returns the largest size, as it is printed, with which all corners of these statements work out."""
         now = max(max(w.sizes) for w in self.own)
-        found = largest(self._fits, now)
+        found = finishing.largest(self._fits, now)
         for most in (_floor(found * (1 + 1e-9)), _floor(found)):
             if most > 0 and self._fits(most):
                 return most
@@ -270,9 +261,9 @@ class _Fault:
 
     def _fits(self, size: float) -> bool:
         own = {id(w) for w in self.own}
-        turned = [sized(w, size) if id(w) in own else w for w in self.works]
+        turned = [finishing.sized(w, size) if id(w) in own else w for w in self.works]
         mine = {id(t) for t, w in zip(turned, self.works, strict=True) if id(w) in own}
-        result = finish([curve for _, curve in self.leaves], turned)
+        result = finishing.finish([curve for _, curve in self.leaves], turned)
         return not any(id(w) in mine for failure in result.failures for w in _works(failure))
 
     def note(self) -> Diagnostic:

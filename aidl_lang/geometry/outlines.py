@@ -10,34 +10,19 @@ from functools import reduce
 
 from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.records import record
-from aidl_lang.geometry import finishing
+from aidl_lang.geometry import finishing, solved
 from aidl_lang.geometry import outline_notes as notes
 from aidl_lang.geometry.boolean import clipped_each, common, united, without
-from aidl_lang.geometry.curves import LARGEST, Line, Piece, Vec, larger_side, union_bounds
+from aidl_lang.geometry.curves import LARGEST, Line, Piece, Vec, extent
 from aidl_lang.geometry.drawing import Drawing
 from aidl_lang.geometry.faces import region_of
 from aidl_lang.geometry.finishing import Arm, Corner, Result, Work, arms_at, corners_of
 from aidl_lang.geometry.offsets import NEAR, hull, offset, thick
 from aidl_lang.geometry.outline_notes import Misfit
 from aidl_lang.geometry.region import Region, length
-from aidl_lang.geometry.solved import (
-    Box,
-    Finish,
-    Leaves,
-    Recipe,
-    SolvedGeometry,
-    SolvedModel,
-    SolvedStructure,
-    as_geometry,
-)
+from aidl_lang.geometry.solved import Finish, SolvedGeometry, SolvedModel, SolvedStructure, as_geometry
 from aidl_lang.geometry.styles import is_filled
-from aidl_lang.geometry.tiling import (
-    Lattice,
-    TooManyCopiesError,
-    tiled_areas,
-    tiled_bars,
-    tiled_strokes,
-)
+from aidl_lang.geometry.tiling import Lattice, TooManyCopiesError, tiled_areas, tiled_bars, tiled_strokes
 
 _SAME_AREA = 1e-6
 """Relative difference of areas up to which a shape of the library is what exact geometry gives."""
@@ -106,7 +91,7 @@ class _Outliner:
             s,
             geometry=geometry,
             structures=children,
-            box=Box.around(derived, children, [s.box.bounds] if s.box is not None else []),
+            box=solved.Box.around(derived, children, [s.box.bounds] if s.box is not None else []),
             finishes=tuple(self._with_corners(s.finishes)),
             finished=tuple(finished),
             inside=inside if s.clip else None,
@@ -151,14 +136,14 @@ class _Outliner:
         areas = [r.area for r in regions]
         return g if abs(areas[0] - areas[1]) <= _SAME_AREA * abs(areas[1]) else exact
 
-    def _exact(self, g: SolvedGeometry, recipe: Recipe) -> SolvedGeometry:
+    def _exact(self, g: SolvedGeometry, recipe: solved.Recipe) -> SolvedGeometry:
         if g.path not in self.made:
             curves = self._curves(g, recipe)
             parts = tuple(as_geometry(f"edges[{k}]", g, c) for k, c in enumerate(curves))
             self.made[g.path] = replace(g, parts=parts, curve=None)
         return replace(self.made[g.path], construction=g.construction)
 
-    def _curves(self, g: SolvedGeometry, recipe: Recipe) -> list[Piece]:
+    def _curves(self, g: SolvedGeometry, recipe: solved.Recipe) -> list[Piece]:
         groups = [self._operand(group) for group in recipe.operands]
         curves = [[c for one in group for _, c in _leaves(one)] for group in groups]
         match recipe.kind:
@@ -179,7 +164,7 @@ class _Outliner:
         return self._left(g, recipe, region.pieces)
 
     def _left(
-        self, g: SolvedGeometry, recipe: Recipe, pieces: Sequence[Piece], depth: float | None = None
+        self, g: SolvedGeometry, recipe: solved.Recipe, pieces: Sequence[Piece], depth: float | None = None
     ) -> list[Piece]:
         """Returns what is left of an outline, and tells if that is nothing."""
         if not pieces:
@@ -192,7 +177,7 @@ class _Outliner:
         return self._finished(shown, self.finishes)
 
     def _from_regions(
-        self, g: SolvedGeometry, recipe: Recipe, groups: list[list[SolvedGeometry]], first: list[Piece]
+        self, g: SolvedGeometry, recipe: solved.Recipe, groups: list[list[SolvedGeometry]], first: list[Piece]
     ) -> list[Piece]:
         regions = [_region(group) for group in groups]
         if recipe.kind == "clip" and not regions[0] and regions[1]:
@@ -204,7 +189,7 @@ class _Outliner:
         return self._combined(g, recipe, regions)
 
     def _tiled(
-        self, g: SolvedGeometry, recipe: Recipe, groups: list[list[SolvedGeometry]], first: list[Piece]
+        self, g: SolvedGeometry, recipe: solved.Recipe, groups: list[list[SolvedGeometry]], first: list[Piece]
     ) -> list[Piece]:
         region = _region(groups[1])
         if not region:
@@ -229,7 +214,7 @@ class _Outliner:
             return []
         return self._left(g, recipe, found)
 
-    def _combined(self, g: SolvedGeometry, recipe: Recipe, regions: Sequence[Region]) -> list[Piece]:
+    def _combined(self, g: SolvedGeometry, recipe: solved.Recipe, regions: Sequence[Region]) -> list[Piece]:
         sharp = recipe.words.get("corners") != "round"
         region = regions[0]
         match recipe.kind:
@@ -267,7 +252,7 @@ class _Outliner:
         if not self.finishes:
             return list(geometry)
         leaves = [leaf for g in geometry for leaf in _leaves(g)]
-        near = NEAR * _extent([c for _, c in leaves])
+        near = NEAR * extent([c for _, c in leaves])
         works: list[Work] = []
         reasons: list[Finish] = []
         for f, corner in (*self._own(leaves, finishes, near, told), *self._inherited(leaves, near)):
@@ -291,13 +276,13 @@ class _Outliner:
         return _rebuilt(geometry, leaves, result) if result.finished else list(geometry)
 
     def _fitted(
-        self, leaves: Leaves, works: list[Work], reasons: list[Finish], told: SolvedStructure | None
+        self, leaves: solved.Leaves, works: list[Work], reasons: list[Finish], told: SolvedStructure | None
     ) -> tuple[list[Work], list[Finish]]:
         """Returns the works with the sizes of those as large as fits, without those that do not fit."""
         if all(f.sizes for f in reasons):
             return works, reasons
         curves = [c for _, c in leaves]
-        works = finishing.fitted(curves, works, [0 if f.sizes else f.run for f in reasons], _extent(curves))
+        works = finishing.fitted(curves, works, [0 if f.sizes else f.run for f in reasons], extent(curves))
         fit = [(w, f) for w, f in zip(works, reasons, strict=True) if w.sizes[0] > 0]
         without = [(w, f) for w, f in zip(works, reasons, strict=True) if not w.sizes[0] > 0]
         if told is not None and without:
@@ -305,7 +290,7 @@ class _Outliner:
         return [w for w, _ in fit], [f for _, f in fit]
 
     def _own(
-        self, leaves: Leaves, finishes: Sequence[Finish], near: float, told: SolvedStructure | None
+        self, leaves: solved.Leaves, finishes: Sequence[Finish], near: float, told: SolvedStructure | None
     ) -> Iterator[tuple[Finish, Corner]]:
         for f in finishes:
             if f.of and not any(_is_of(g.path, f.of) for g, _ in leaves):
@@ -316,7 +301,7 @@ class _Outliner:
             if not f.sizes or max(f.sizes) > 0:
                 yield from ((f, corner) for corner in corners)
 
-    def _inherited(self, leaves: Leaves, near: float) -> Iterator[tuple[Finish, Corner]]:
+    def _inherited(self, leaves: solved.Leaves, near: float) -> Iterator[tuple[Finish, Corner]]:
         """Yields a copy's finishes from its source: of the same corners, with sizes in proportion."""
         sources, curves = [(self._source(g), c) for g, c in leaves], [c for _, c in leaves]
         for _ in self.index:  # copies of copies: no chain is longer than that
@@ -347,7 +332,7 @@ def _is_of(path: str, of: Iterable[str]) -> bool:
     return any(path == p or path.startswith((f"{p}.", f"{p}[")) for p in of)
 
 
-def _corners(f: Finish, leaves: Leaves, near: float) -> list[Corner]:
+def _corners(f: Finish, leaves: solved.Leaves, near: float) -> list[Corner]:
     own = [number for number, (g, _) in enumerate(leaves) if _is_of(g.path, f.of)]
     if f.at is None:
         found = corners_of([leaves[n][1] for n in own], near)
@@ -365,7 +350,9 @@ def _renumbered(corner: Corner, numbers: Sequence[int]) -> Corner:
     return Corner(corner.at, (a, b))
 
 
-def _rebuilt(geometry: Sequence[SolvedGeometry], leaves: Leaves, result: Result) -> list[SolvedGeometry]:
+def _rebuilt(
+    geometry: Sequence[SolvedGeometry], leaves: solved.Leaves, result: Result
+) -> list[SolvedGeometry]:
     """Returns the geometry with its new curves, which belong to what both their neighbours belong to."""
     changed = {g.path: c for (g, old), c in zip(leaves, result.curves, strict=True) if c is not old}
     added: dict[str, list[SolvedGeometry]] = {}
@@ -418,10 +405,6 @@ def clipped_ink(geometry: Sequence[SolvedGeometry], region: Region) -> list[Solv
 def _region(geometry: Sequence[SolvedGeometry]) -> Region:
     found = ((g, list(_leaves(g))) for g in geometry)
     return region_of((g, leaves) for g, leaves in found if leaves)[0]
-
-
-def _extent(curves: Sequence[Piece]) -> float:
-    return larger_side(union_bounds([c.box for c in curves])) or 1.0
 
 
 def _deepest(region: Region, too_deep: float) -> float:

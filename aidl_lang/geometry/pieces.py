@@ -1,4 +1,5 @@
-"""Warns of solids that fall into pieces which nothing joins, and of pieces that a hole cuts free all around.
+"""Warns of bodies that touch no other, of solids that fall into pieces which nothing joins, and of pieces
+that a hole cuts free all around.
 
 Where no hole is between them, pieces that are alike are a pattern and meant, as are letters, and what a
 single geometry consists of.
@@ -15,11 +16,10 @@ from aidl_lang.common.prose import named, rough
 from aidl_lang.common.records import record
 from aidl_lang.common.source import Span
 from aidl_lang.geometry.bodies import Bodies, Mass
-from aidl_lang.geometry.boolean import UNNOTICED, Solid, lie_within, nearest_region
+from aidl_lang.geometry.boolean import UNNOTICED, Contacts, Solid, lie_within, nearest_region
 from aidl_lang.geometry.faces import OwnFace, union_of
-from aidl_lang.geometry.nearness import near_pairs
+from aidl_lang.geometry.intersect import near_pairs
 from aidl_lang.geometry.network import Joined
-from aidl_lang.geometry.notes import marked_detached
 from aidl_lang.geometry.region import Region
 from aidl_lang.geometry.sections import Section, trace, trace_all, union
 from aidl_lang.geometry.solved import SolvedStructure
@@ -32,6 +32,50 @@ _MOST = 3
 """Loose pieces of a solid that are told."""
 LETTERING = "text"
 """The type of letters."""
+
+
+def marked_detached(root: SolvedStructure) -> set[str]:
+    """Returns the paths of structures that are `@detached`, or lie in one that is."""
+    return {
+        below.path
+        for s in root.walk()
+        if "detached" in s.attributes and s.attributes["detached"] != (False,)
+        for below in s.walk()
+    }
+
+
+def detached_notes(root: SolvedStructure, paths: Sequence[str], contacts: Contacts) -> list[Diagnostic]:
+    """Returns a warning for each statement with bodies that touch and overlap none of the others."""
+    free = marked_detached(root)
+    if sum(path not in free for path in paths) < 2:
+        return []  # there is nothing that a part could touch
+    held = {path for pair in contacts.near() for path in pair}
+    structures = {s.path: s for s in root.walk()}
+    lonely: dict[object, list[SolvedStructure]] = {}
+    for path in paths:
+        if path not in held and path not in free:
+            lonely.setdefault(structures[path].span or path, []).append(structures[path])
+    return [_detached(alike, contacts.nearest(alike[0].path)) for alike in lonely.values()]
+
+
+def _detached(structures: Sequence[SolvedStructure], nearest: tuple[float, str]) -> Diagnostic:
+    """Returns the warning about the bodies of one statement; `nearest` is what is nearest to the first."""
+    structure, is_one = structures[0], len(structures) == 1
+    to = "" if is_one else f" to `{structure.path}`"
+    message = (
+        f"{named(s.path for s in structures)} {'touches' if is_one else 'touch'} no other part; "
+        f"the nearest{to}, `{nearest[1]}`, is {rough(nearest[0])} mm away"
+    )
+    hints = (
+        "to join them, let their borders meet: `gap: 0`, `touching(…)` or `on_top_of(…)`",
+        "if that is meant, say so: `@detached` before its definition",
+    )
+    span, fix = structure.span, None
+    is_plain = span and re.match(r"(@|[a-z]+\s+\w+\s*(\[|\(|\{|at\b|rotated\b))", span.text)
+    if span and is_plain and "detached" not in structure.attributes:
+        fix = Fix("say that it is meant", (Edit(Span(span.source, span.start, span.start), "@detached "),))
+    label = "stands by itself" if is_one else "each stands by itself"
+    return Diagnostic("W0705", message, span, label, hints=hints, fix=fix)
 
 
 @record()

@@ -13,18 +13,7 @@ import numpy as np
 from aidl_lang.building.curves import gauss
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
-from aidl_lang.geometry.curves import (
-    TAU,
-    Arc,
-    Bezier,
-    Bounds,
-    Circle,
-    Floats,
-    Line,
-    Piece,
-    Vec,
-    union_bounds,
-)
+from aidl_lang.geometry.curves import Arc, Bezier, Bounds, Circle, Floats, Line, Piece, Vec, union_bounds
 
 
 @record(slots=True)
@@ -51,6 +40,10 @@ class Loop:
     def start(self) -> Vec:
         """Where it begins, by which loops and faces are in order."""
         return self.pieces[0].ends[0]
+
+    @property
+    def box(self) -> Bounds:
+        return union_bounds([piece.box for piece in self.pieces])
 
     @property
     def area(self) -> float:
@@ -123,7 +116,7 @@ class Region:
 
     @cached_property
     def box(self) -> Bounds:
-        return union_bounds([piece.box for face in self.faces for piece in face.outer.pieces])
+        return union_bounds([face.outer.box for face in self.faces])
 
     @property
     def area(self) -> float:
@@ -275,7 +268,7 @@ Polygon = Floats
 
 COARSE = 0.05
 """Millimetres from an outline to the polygon that stands for it where places are sought."""
-COARSEST = TAU / 16
+COARSEST = math.tau / 16
 """Largest angle of a chord, so that a hole much smaller than the tolerance is still round."""
 SLACK = 1e-9
 """Slack in a count of chords, so that rounding does not choose how many there are."""

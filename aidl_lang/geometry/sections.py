@@ -14,20 +14,8 @@ import numpy as np
 
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
-from aidl_lang.geometry.curves import (
-    TAU,
-    Arc,
-    Bounds,
-    Circle,
-    Floats,
-    Ints,
-    Line,
-    Mask,
-    Piece,
-    Vec,
-    union_bounds,
-)
-from aidl_lang.geometry.nearness import inside
+from aidl_lang.geometry.curves import Arc, Bounds, Circle, Floats, Ints, Line, Mask, Piece, Vec
+from aidl_lang.geometry.intersect import inside
 from aidl_lang.geometry.network import NODE, RELATIVE_TOLERANCE, UNKNOWN, Edge, Network, with_finer_chords
 from aidl_lang.geometry.region import Face, Loop, Polygon, Region, length, polygon_area
 from aidl_lang.solver.linear import each_once
@@ -92,6 +80,12 @@ class Section:
         """Whether it is empty, or thinner than the tolerance."""
         left, bottom, right, top = self.box
         return self._is_below((right - left) + (top - bottom))
+
+    @property
+    def is_thin(self) -> bool:
+        """Whether it may be but the difference of curves and chords."""
+        left, bottom, right, top = self.box
+        return self._is_below(100 * self.num_contour() * ((right - left) + (top - bottom)))
 
     def _is_below(self, scale: float) -> bool:
         return self.is_empty or abs(self.area) <= NEGLIGIBLE * scale
@@ -278,7 +272,7 @@ def _holders(outers: list[Loop], holes: list[Loop]) -> list[int]:
     spots = np.array([hole.pieces[0].point(0.5) for hole in holes]).reshape(-1, 2)
     ts = np.linspace(0, 1, 65)
     for number, outer in enumerate(outers):
-        left, bottom, right, top = union_bounds([piece.box for piece in outer.pieces])
+        left, bottom, right, top = outer.box
         within = (spots >= (left, bottom)).all(axis=1) & (spots <= (right, top)).all(axis=1)
         seekers = np.flatnonzero(within & (holder < 0))
         if len(seekers):
@@ -447,7 +441,7 @@ def _to_loop(network: Network, runs: list[Run]) -> Loop:
 def closed_loop(pieces: Sequence[Piece], tolerance: float) -> Loop:
     """Returns the loop of pieces that follow each other, in a canonical form."""
     pieces = joined(pieces, lambda a, b: _fuse(a, b, tolerance))
-    if len(pieces) == 1 and isinstance(arc := pieces[0], Arc) and abs(arc.sweep) > TAU - 1e-6:
+    if len(pieces) == 1 and isinstance(arc := pieces[0], Arc) and abs(arc.sweep) > math.tau - 1e-6:
         return Loop((Circle(arc.center, arc.radius),), reversed=arc.sweep < 0)
 
     # The leftmost point begins, the lowest of those: compared coarsely, so that rounding does not choose.
@@ -464,7 +458,7 @@ def _fuse(a: Piece, b: Piece, tolerance: float) -> Piece | None:
         return _fuse_lines(a, b, tolerance)
     if isinstance(a, Arc) and isinstance(b, Arc):
         same = math.dist(a.center, b.center) <= tolerance and abs(a.radius - b.radius) <= tolerance
-        if same and a.sweep * b.sweep > 0 and abs(a.sweep + b.sweep) <= TAU + 1e-9:
+        if same and a.sweep * b.sweep > 0 and abs(a.sweep + b.sweep) <= math.tau + 1e-9:
             return Arc(a.center, a.radius, a.start, b.end, a.sweep + b.sweep)
     return None
 

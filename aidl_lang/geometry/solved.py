@@ -13,16 +13,7 @@ from typing import TypeAlias
 
 from aidl_lang.common.records import record
 from aidl_lang.common.source import Span
-from aidl_lang.geometry.curves import (
-    FIELDS,
-    Arc,
-    Bezier,
-    Bounds,
-    Circle,
-    Piece,
-    Vec,
-    union_bounds,
-)
+from aidl_lang.geometry.curves import FIELDS, Arc, Bezier, Bounds, Circle, Piece, Vec, union_bounds
 from aidl_lang.geometry.region import Region
 from aidl_lang.syntax import ast
 

@@ -21,18 +21,8 @@ import numpy as np
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
 from aidl_lang.geometry.boolean import clearance, clipped_each, common
-from aidl_lang.geometry.curves import (
-    Bounds,
-    Floats,
-    Line,
-    Piece,
-    Vec,
-    image,
-    larger_side,
-    turn_between,
-    union_bounds,
-)
-from aidl_lang.geometry.nearness import Sides, inside
+from aidl_lang.geometry.curves import Bounds, Floats, Line, Piece, Vec, image, turn_between, union_bounds
+from aidl_lang.geometry.intersect import Sides, inside
 from aidl_lang.geometry.network import CHORD, RELATIVE_TOLERANCE
 from aidl_lang.geometry.offsets import thick
 from aidl_lang.geometry.region import Region
@@ -250,7 +240,7 @@ def _reach(cell: Sequence[Piece], box: Bounds) -> tuple[Floats, Floats]:
 def _meet_each_other(cell: Region, lattice: Lattice) -> bool:
     """Tells whether copies of an area touch or overlap."""
     left, bottom, right, top = cell.box
-    near = RELATIVE_TOLERANCE * larger_side((left, bottom, right, top))
+    near = RELATIVE_TOLERANCE * max(right - left, top - bottom)
     row = lattice.row or (0.0, 0.0)
     for j in range(_NEXT + 1 if lattice.row is not None else 1):
         for i in range(-_NEXT if j else 1, _NEXT + 1):

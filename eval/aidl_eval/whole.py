@@ -11,7 +11,7 @@ import numpy as np
 from aidl_eval.regions import Regions
 from aidl_lang.geometry.boolean import common, region_distance
 from aidl_lang.geometry.curves import Line, inward
-from aidl_lang.geometry.nearness import near_pairs
+from aidl_lang.geometry.intersect import near_pairs
 from aidl_lang.geometry.region import Face, Loop, Region, measure, polygon_area
 
 NEAR = 0.02

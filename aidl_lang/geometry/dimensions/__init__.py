@@ -454,8 +454,8 @@ RANKS = ("hand", "param", "overall", "constraint", "size", "pattern")
 def sizes(model: Model, solved: SolvedModel, evaluate: Evaluator) -> tuple[Dimension, ...]:
     """Returns the dimensions that the program states: exact sizes, what constraints measure, kept sizes."""
     names = _param_names(model.root)
-    scene = Scene(model, solved, evaluate, names)
-    found = [*by_hand(model, scene), *features.field_sizes(model, solved, evaluate, names)]
+    scene = Scene(model, solved.root, evaluate, names)
+    found = [*by_hand(model, scene), *features.field_sizes(model, solved.root, evaluate, names)]
     found += stated_lengths(model, scene)
     found = [d for d in found if abs(d.value) <= LARGEST]  # of what has a place
     return tuple(sorted(found, key=lambda d: RANKS.index(d.origin)))

@@ -22,14 +22,7 @@ from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
 from aidl_lang.geometry.curves import NO_LENGTH, Arc, Circle, Line, Piece, Vec, turn_between
 from aidl_lang.geometry.dimensions import features
-from aidl_lang.geometry.solved import (
-    Dimension,
-    Length,
-    Roundness,
-    SolvedGeometry,
-    SolvedModel,
-    SolvedStructure,
-)
+from aidl_lang.geometry.solved import Dimension, Length, Roundness, SolvedGeometry, SolvedStructure
 from aidl_lang.syntax import ast
 
 _AXIS = {"left": 0, "right": 0, "center_x": 0, "x": 0, "bottom": 1, "top": 1, "center_y": 1, "y": 1}
@@ -66,10 +59,10 @@ class Scene:
     """The solved structures and geometry by path."""
 
     def __init__(
-        self, model: Model, solved: SolvedModel, evaluate: Evaluator, names: Mapping[Expression, str]
+        self, model: Model, solved: SolvedStructure, evaluate: Evaluator, names: Mapping[Expression, str]
     ) -> None:
         self.root, self.evaluate, self.names = model.root, evaluate, names
-        self.structures: dict[str, SolvedStructure] = {s.path: s for s in solved.root.walk()}
+        self.structures: dict[str, SolvedStructure] = {s.path: s for s in solved.walk()}
         self.geometry: dict[str, SolvedGeometry] = {
             g.path: g for s in self.structures.values() for own in s.geometry for g in own.walk()
         }

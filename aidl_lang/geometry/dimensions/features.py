@@ -18,17 +18,9 @@ from aidl_lang.checking.units import ANGLE, LENGTH
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
 from aidl_lang.geometry.curves import Arc, Circle, Ellipse, EllipseArc, Line, Piece, Vec, larger_side
-from aidl_lang.geometry.nearness import inside
+from aidl_lang.geometry.intersect import inside
 from aidl_lang.geometry.region import Region
-from aidl_lang.geometry.solved import (
-    Dimension,
-    Length,
-    Opening,
-    Roundness,
-    SolvedGeometry,
-    SolvedModel,
-    SolvedStructure,
-)
+from aidl_lang.geometry.solved import Dimension, Length, Opening, Roundness, SolvedGeometry, SolvedStructure
 
 # --- Sizes of what `@clip` takes away: a drawing does not state them.
 
@@ -251,10 +243,10 @@ _PARALLEL = 1 - 1e-9
 
 
 def field_sizes(
-    model: Model, solved: SolvedModel, evaluate: Evaluator, names: Mapping[Expression, str]
+    model: Model, solved: SolvedStructure, evaluate: Evaluator, names: Mapping[Expression, str]
 ) -> Iterator[Dimension]:
     """Yields the sizes of all geometry that is drawn; of copies only round ones, to be counted."""
-    for structure, read in zip(model.root.walk(), solved.root.walk(), strict=True):
+    for structure, read in zip(model.root.walk(), solved.walk(), strict=True):
         checkpoint()
         turned = evaluate(convert_angle(ex.ZERO, structure, model.root))
         known = {g.path: g for g in read.geometry}
