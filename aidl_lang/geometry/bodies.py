@@ -8,7 +8,7 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import field, replace
 from itertools import count
 
-from aidl_lang.common.diagnostics import Diagnostic
+from aidl_lang.common.diagnostics import Diagnostic, Label
 from aidl_lang.common.prose import named
 from aidl_lang.common.records import record
 from aidl_lang.geometry.curves import Arc, Bezier, Line, Piece, Vec, larger_side
@@ -16,7 +16,7 @@ from aidl_lang.geometry.faces import OwnFace, OwnFaces, Shape, own_faces, union_
 from aidl_lang.geometry.intersect import near_pairs
 from aidl_lang.geometry.network import Network
 from aidl_lang.geometry.sections import Section, Traced, trace_all, union
-from aidl_lang.geometry.solved import SolvedGeometry, SolvedStructure, as_geometry
+from aidl_lang.geometry.solved import SolvedGeometry, SolvedStructure, as_geometry, at
 
 # --- What structures are clipped to, in the network of curves: solids and holes lie inside of it.
 
@@ -148,23 +148,6 @@ class LooseCurves:
 
 
 @record()
-class IdleHole:
-    """A hole that removes nothing from the structure that holds it."""
-
-    hole: SolvedStructure
-    holder: SolvedStructure | None
-
-
-@record()
-class FilledHole:
-    """A hole whose void is material again in the structure above."""
-
-    hole: SolvedStructure
-    holder: SolvedStructure
-    filler: SolvedStructure | None
-
-
-@record()
 class CoveredHoles:
     """Holes of a face that other faces of its structure cover."""
 
@@ -183,7 +166,7 @@ class CrossedOutline:
     places: tuple[Vec, ...]
 
 
-Finding = InnerLoop | LooseCurves | IdleHole | FilledHole | CoveredHoles | CrossedOutline
+Finding = InnerLoop | LooseCurves | CoveredHoles | CrossedOutline | Diagnostic
 
 
 @record(frozen=False)
@@ -341,7 +324,7 @@ class Bodies:
                 if not removed.is_nothing:
                     voids.append(Void(hole.hole, removed))
                 elif not any(m.section.overlaps(hole.section) for m in cut.islands):
-                    self.findings.append(IdleHole(hole.hole, holder))
+                    self.findings.append(idle_hole(hole.hole, holder))
         return voids
 
     def _still_open(
@@ -358,7 +341,7 @@ class Bodies:
             if material.covers(void.section):
                 near = (m for m in others if m.section.may_meet(void.section))
                 filler = next((m.structure for m in near if m.section.covers(void.section)), None)
-                self.findings.append(FilledHole(void.hole, holder, filler))
+                self.findings.append(_filled_hole(void.hole, holder, filler))
             else:
                 kept.append(void)
         return kept
@@ -378,6 +361,59 @@ def _around(material: Section, holes: Sequence[Section], taken: Section) -> Iter
         if i < len(parts) <= j:
             beside[j - len(parts)].append(parts[i])
     yield from map(union, beside)
+
+
+def idle_hole(hole: SolvedStructure, holder: SolvedStructure | None) -> Diagnostic:
+    """Returns the warning on a hole that removes nothing from the structure that holds it."""
+    if holder is None:
+        return Diagnostic(
+            "W0703",
+            f"hole `{hole.path}` cuts nothing: no structure holds it",
+            hole.span,
+            "the root of the program is a hole",
+            hints=(f"write it inside the solid it shall cut: `solid … {{ hole {hole.name} {{ … }} }}`",),
+        )
+    below = hole.path.removeprefix(f"{holder.path}.")
+    hints = [
+        f"place it inside: `constrain inside({below}, …)` in `{holder.path}`, or move it to "
+        "the structure that it shall cut: a hole cuts the structure that holds it, with all its children"
+    ]
+    if hole.box and holder.box:
+        hints.insert(0, f"the hole spans {_spans(hole)}, `{holder.name}` spans {_spans(holder)}")
+    return Diagnostic(
+        "W0703",
+        f"hole `{hole.path}` removes nothing from {holder.kind} `{holder.path}`",
+        hole.span,
+        "no material here",
+        (Label(holder.span, "holds the hole"),) if holder.span else (),
+        tuple(hints),
+    )
+
+
+def _spans(structure: SolvedStructure) -> str:
+    box = structure.box
+    assert box is not None
+    return f"{at((box.left, box.bottom))} to {at((box.right, box.top))}"
+
+
+def _filled_hole(
+    hole: SolvedStructure, holder: SolvedStructure, filler: SolvedStructure | None
+) -> Diagnostic:
+    """Returns the warning on a hole whose void is material again in the structure above."""
+    by = f"`{filler.path}`" if filler else "other material"
+    hints = [f"to cut all of `{holder.path}`, move the hole up into it, beside the parts that it shall cut"]
+    if filler is not None and holder.kind == "solid":
+        hints.append(
+            f"to keep `{filler.name}` a part of its own in the hole, make `{holder.name}` an `assembly`"
+        )
+    return Diagnostic(
+        "W0704",
+        f"hole `{hole.path}` is filled again by {by} in {holder.kind} `{holder.path}`",
+        hole.span,
+        "nothing of this hole remains",
+        (Label(filler.span, "fills it"),) if filler and filler.span else (),
+        tuple(hints),
+    )
 
 
 # --- The edges of united structures and geometries that run inside their body: fine lines in pictures,
@@ -545,8 +581,8 @@ def welded_gaps(
 
 def ends_of(network: Network, geometry: SolvedGeometry, number: int) -> Iterator[End]:
     """Yields both ends of a curve."""
-    for at, is_last in zip(network.curves[number].ends, (False, True), strict=True):
-        yield End(geometry, number, at, is_last)
+    for spot, is_last in zip(network.curves[number].ends, (False, True), strict=True):
+        yield End(geometry, number, spot, is_last)
 
 
 def _ends_of_open(network: Network, shapes: Iterable[Shape]) -> Iterator[End]:

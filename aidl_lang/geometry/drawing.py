@@ -19,7 +19,6 @@ from aidl_lang.geometry.bodies import (
     Clips,
     CoveredHoles,
     Gap,
-    IdleHole,
     InnerLoop,
     LooseCurves,
     Mass,
@@ -27,6 +26,7 @@ from aidl_lang.geometry.bodies import (
     clip_shapes,
     effective,
     empty_clips,
+    idle_hole,
     inner_seams,
     open_gaps,
     visible_seams,
@@ -346,7 +346,7 @@ def _root_masses(walk: Bodies, root: SolvedStructure) -> list[Mass]:
         return walk.masses(root)
     cut = walk.cut(root)
     if cut.holes:
-        walk.findings.append(IdleHole(root, None))
+        walk.findings.append(idle_hole(root, None))
     return list(cut.islands)
 
 

@@ -23,11 +23,11 @@ from aidl_lang.geometry.curves import NO_LENGTH, Bounds, Line, Piece, Vec, are_n
 from aidl_lang.geometry.faces import Shape
 from aidl_lang.geometry.intersect import from_sides, inside, meet
 from aidl_lang.geometry.network import GRID, Network, Use
-from aidl_lang.geometry.notes import at, local
+from aidl_lang.geometry.notes import local
 from aidl_lang.geometry.pieces import LETTERING
 from aidl_lang.geometry.region import Region, length
 from aidl_lang.geometry.sections import Section, union
-from aidl_lang.geometry.solved import SolvedGeometry, SolvedStructure
+from aidl_lang.geometry.solved import SolvedGeometry, SolvedStructure, at
 
 if TYPE_CHECKING:
     from aidl_lang.geometry.drawing import Body, Stroke

@@ -13,28 +13,13 @@ from itertools import combinations, islice
 from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix, Label
 from aidl_lang.common.prose import counted, named, rough, ticked
 from aidl_lang.common.source import Span
-from aidl_lang.geometry.bodies import (
-    CoveredHoles,
-    CrossedOutline,
-    End,
-    FilledHole,
-    Finding,
-    Gap,
-    IdleHole,
-    InnerLoop,
-    LooseCurves,
-    ends_of,
-)
+from aidl_lang.geometry.bodies import CoveredHoles, CrossedOutline, End, Gap, InnerLoop, LooseCurves, ends_of
 from aidl_lang.geometry.curves import LARGEST, NO_LENGTH, Bezier, Vec, larger_side
 from aidl_lang.geometry.faces import is_winding
 from aidl_lang.geometry.network import Network
-from aidl_lang.geometry.solved import SolvedGeometry, SolvedStructure
+from aidl_lang.geometry.solved import SolvedGeometry, SolvedStructure, at
 
 GUIDE = "to guide other geometry only, write `construction` before it"
-
-
-def at(p: Vec) -> str:
-    return f"({rough(p[0])}, {rough(p[1])})"
 
 
 def local(structure: SolvedStructure, geometry: SolvedGeometry) -> str:
@@ -232,57 +217,6 @@ def _join_fix(structure: SolvedStructure, equation: str) -> Fix | None:
     return Fix("join the two ends", (Edit(place, text),))
 
 
-def _idle_hole(finding: IdleHole) -> Diagnostic:
-    hole, holder = finding.hole, finding.holder
-    if holder is None:
-        return Diagnostic(
-            "W0703",
-            f"hole `{hole.path}` cuts nothing: no structure holds it",
-            hole.span,
-            "the root of the program is a hole",
-            hints=(f"write it inside the solid it shall cut: `solid … {{ hole {hole.name} {{ … }} }}`",),
-        )
-    below = hole.path.removeprefix(f"{holder.path}.")
-    hints = [
-        f"place it inside: `constrain inside({below}, …)` in `{holder.path}`, or move it to "
-        "the structure that it shall cut: a hole cuts the structure that holds it, with all its children"
-    ]
-    if hole.box and holder.box:
-        hints.insert(0, f"the hole spans {_spans(hole)}, `{holder.name}` spans {_spans(holder)}")
-    return Diagnostic(
-        "W0703",
-        f"hole `{hole.path}` removes nothing from {holder.kind} `{holder.path}`",
-        hole.span,
-        "no material here",
-        (Label(holder.span, "holds the hole"),) if holder.span else (),
-        tuple(hints),
-    )
-
-
-def _spans(structure: SolvedStructure) -> str:
-    box = structure.box
-    assert box is not None
-    return f"{at((box.left, box.bottom))} to {at((box.right, box.top))}"
-
-
-def _filled_hole(finding: FilledHole) -> Diagnostic:
-    hole, holder, filler = finding.hole, finding.holder, finding.filler
-    by = f"`{filler.path}`" if filler else "other material"
-    hints = [f"to cut all of `{holder.path}`, move the hole up into it, beside the parts that it shall cut"]
-    if filler is not None and holder.kind == "solid":
-        hints.append(
-            f"to keep `{filler.name}` a part of its own in the hole, make `{holder.name}` an `assembly`"
-        )
-    return Diagnostic(
-        "W0704",
-        f"hole `{hole.path}` is filled again by {by} in {holder.kind} `{holder.path}`",
-        hole.span,
-        "nothing of this hole remains",
-        (Label(filler.span, "fills it"),) if filler and filler.span else (),
-        tuple(hints),
-    )
-
-
 def _covered_holes(finding: CoveredHoles) -> Diagnostic:
     s, count = finding.structure, finding.count
     face, by = named([local(s, g) for g in finding.face.geometries]), [local(s, g) for g in finding.covers]
@@ -388,17 +322,17 @@ _MOST_ENDS = 100
 """Open ends of one outline among which the two nearest are sought."""
 
 
-def finding_notes(finding: Finding, network: Network) -> Iterator[Diagnostic]:
+def finding_notes(
+    finding: InnerLoop | CoveredHoles | CrossedOutline | LooseCurves | Diagnostic, network: Network
+) -> Iterator[Diagnostic]:
     """Yields the warnings about a finding: open curves are one only in solids and holes, those imported
     apart.
     """
     match finding:
         case InnerLoop():
             yield _inner_loop(finding)
-        case IdleHole():
-            yield _idle_hole(finding)
-        case FilledHole():
-            yield _filled_hole(finding)
+        case Diagnostic():
+            yield finding
         case CoveredHoles():
             yield _covered_holes(finding)
         case CrossedOutline():

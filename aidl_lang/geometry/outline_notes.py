@@ -12,8 +12,8 @@ from aidl_lang.common.records import record
 from aidl_lang.common.source import Span
 from aidl_lang.geometry import finishing
 from aidl_lang.geometry.finishing import Corner, Result, TooLarge, Work
-from aidl_lang.geometry.notes import at, local
-from aidl_lang.geometry.solved import Finish, Leaves, Recipe, SolvedGeometry, SolvedStructure
+from aidl_lang.geometry.notes import local
+from aidl_lang.geometry.solved import Finish, Leaves, Recipe, SolvedGeometry, SolvedStructure, at
 from aidl_lang.geometry.tiling import MOST
 
 _ONE_WAY = 5

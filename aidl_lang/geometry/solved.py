@@ -11,6 +11,7 @@ from dataclasses import field
 from functools import cached_property
 from typing import TypeAlias
 
+from aidl_lang.common.prose import rough
 from aidl_lang.common.records import record
 from aidl_lang.common.source import Span
 from aidl_lang.geometry.curves import FIELDS, Arc, Bezier, Bounds, Circle, Piece, Vec, union_bounds
@@ -420,3 +421,8 @@ def described(curve: Piece) -> tuple[str, Values]:
         elif name != "first":
             values[name] = math.degrees(value) if name == "angle" else value
     return curve.kind, values
+
+
+def at(p: Vec) -> str:
+    """Returns a place as messages have it."""
+    return f"({rough(p[0])}, {rough(p[1])})"
