@@ -109,9 +109,8 @@ def boxes(compiled: Any) -> list[tuple[float, float]]:
 
 
 def material(compiled: Any) -> float:
-    from aidl_lang.geometry.region import area
 
-    areas = (area(body.region) * body.style.quantity for body in compiled.drawing.bodies)
+    areas = (body.region.area * body.style.quantity for body in compiled.drawing.bodies)
     return float(sum(areas))
 
 

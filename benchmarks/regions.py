@@ -72,7 +72,6 @@ class Plate:
 def ours(plate: Plate) -> Callable[[], Result]:
     from aidl_lang.geometry.curves import Circle, Line, Piece
     from aidl_lang.geometry.drawing import draw
-    from aidl_lang.geometry.region import area
     from aidl_lang.geometry.solved import Frame, SolvedGeometry, SolvedModel, SolvedStructure
 
     def geometry(name: str, curve: Piece | None, *parts: SolvedGeometry) -> SolvedGeometry:
@@ -93,7 +92,7 @@ def ours(plate: Plate) -> Callable[[], Result]:
 
     def work() -> Result:
         region = draw(model)[0].regions["plate"]
-        return area(region), sum(not isinstance(p, Line) for loop in region.loops for p in loop.pieces)
+        return region.area, sum(not isinstance(p, Line) for loop in region.loops for p in loop.pieces)
 
     return work
 

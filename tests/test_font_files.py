@@ -23,7 +23,6 @@ from aidl_lang.common.resources import resource
 from aidl_lang.common.running import limited_to
 from aidl_lang.common.source import SourceFile
 from aidl_lang.common.world import DiskWorld, FileError, MemoryWorld, ReadFailure
-from aidl_lang.geometry.region import area
 from aidl_lang.tools.discretion import Programs
 
 Draw = Callable[[Any], None]
@@ -124,7 +123,7 @@ def drawn_area(data: bytes, text: str) -> float:
     found = compiled(f'solid s {{ t = text("{text}", height: 7, font: "own.otf") }}', data)
     assert found.ok, [d.message for d in found.diagnostics]
     assert found.drawing is not None
-    return sum(area(body.region) for body in found.drawing.bodies)
+    return sum(body.region.area for body in found.drawing.bodies)
 
 
 # --- What is right ---------------------------------------------------------------------------------
@@ -164,9 +163,7 @@ def test_united_contours_of_the_own_font_enclose_what_alternating_ones_do(bold: 
         SourceFile("p", f'solid s {{ t = text("{word}", height: 7, bold: {str(bold).lower()}) }}')
     )
     assert plain.drawing is not None
-    assert drawn_area(data, word) == pytest.approx(
-        sum(area(b.region) for b in plain.drawing.bodies), rel=1e-9
-    )
+    assert drawn_area(data, word) == pytest.approx(sum(b.region.area for b in plain.drawing.bodies), rel=1e-9)
 
 
 # --- Where they are looked for ---------------------------------------------------------------------

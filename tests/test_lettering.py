@@ -20,8 +20,7 @@ from aidl_lang.common import lettering
 from aidl_lang.common.resources import resource
 from aidl_lang.common.source import SourceFile
 from aidl_lang.geometry.boolean import lettered_region, stencilled
-from aidl_lang.geometry.curves import Bezier, Line, reverse
-from aidl_lang.geometry.region import loop_area
+from aidl_lang.geometry.curves import Bezier, Line
 from tests.amount import TRIES_ALL, tries
 
 FONT = TTFont(resource("aidl_lang/common/fonts/DejaVuSansAIDL.ttf"))
@@ -100,7 +99,7 @@ def test_faces_of_letters_are_what_their_contours_enclose(font: lettering.Font) 
                 alternating = alternating.symmetric_difference(contour)
             count = len(alternating.geoms) if isinstance(alternating, MultiPolygon) else 1
             assert len(faces) == count, character
-            areas = [[loop_area(loop) for loop in face.loops] for face in faces]
+            areas = [[loop.area for loop in face.loops] for face in faces]
             assert all(outer > 0 and all(hole < 0 for hole in holes) for outer, *holes in areas), character
             assert sum(map(sum, areas)) == pytest.approx(alternating.area, rel=0.02), character
 
@@ -112,9 +111,9 @@ def test_letters_that_may_meet_are_arranged() -> None:
     apart = lettered_region([first, second])
     assert apart is not None
     assert [len(face.holes) for face in apart.faces] == [2, 1]
-    turned = lettered_region([[reverse(piece) for piece in reversed(letter)] for letter in (first, second)])
+    turned = lettered_region([[piece.reversed() for piece in reversed(letter)] for letter in (first, second)])
     assert turned is not None
-    areas = [sum(map(loop_area, face.loops)) for region in (apart, turned) for face in region.faces]
+    areas = [sum(loop.area for loop in face.loops) for region in (apart, turned) for face in region.faces]
     assert areas[:2] == pytest.approx(areas[2:])
     assert lettered_region([first, first]) is None
     assert lettered_region([first[1:]]) is None

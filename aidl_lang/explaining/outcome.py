@@ -16,9 +16,9 @@ from aidl_lang.building.wording import RELATIONS, Wording, differences, givens, 
 from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix, Label
 from aidl_lang.common.prose import fixed, rough
 from aidl_lang.common.source import Span
-from aidl_lang.geometry.curves import Piece, bounds, inward, larger_side, union_bounds
+from aidl_lang.geometry.curves import Piece, inward, larger_side, union_bounds
 from aidl_lang.geometry.drawing import Drawing, all_geometry, region_alone
-from aidl_lang.geometry.region import Region, area, perimeter
+from aidl_lang.geometry.region import Region
 from aidl_lang.geometry.solved import SolvedModel, SolvedStructure
 from aidl_lang.solver.problem import Solution, Status
 
@@ -220,17 +220,17 @@ def _compared(comparison: Comparison, evaluate: Callable[..., float]) -> str:
 
 def measured(kind: str, regions: Sequence[Region], size: float) -> float:
     """Returns a measurement of what is drawn; `size` is that of the drawing."""
-    from aidl_lang.geometry.boolean import clearance, overlap_area
+    from aidl_lang.geometry.boolean import clearance, common
 
     match kind:
         case "area":
-            return area(regions[0])
+            return regions[0].area
         case "perimeter":
-            return perimeter(regions[0])
+            return regions[0].perimeter
         case "clearance":
             return clearance(*regions)
         case _:
-            return float(overlap_area(*regions) > _TOLERANCE * size)
+            return float(common(*regions).area > _TOLERANCE * size)
 
 
 class _Measure:
@@ -256,11 +256,11 @@ class _Measure:
             frames.append(here.frame)
         for frame in frames:
             curves = [inward(c, (frame.x, frame.y), frame.rotation, frame.mirrored) for c in curves]
-        left, bottom, right, top = union_bounds([bounds(c) for c in curves])
+        left, bottom, right, top = union_bounds([c.box for c in curves])
         return {"left": left, "bottom": bottom, "right": right, "top": top}[payload.kind]
 
     def extent(self, outline: Geometry) -> float:
-        return larger_side(union_bounds([bounds(c) for c in self._curves(outline.path)]))
+        return larger_side(union_bounds([c.box for c in self._curves(outline.path)]))
 
     def is_drawn(self, outline: Geometry) -> bool:
         """Tells whether an outline did not come out empty, which is told by itself."""

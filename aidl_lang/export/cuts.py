@@ -16,21 +16,11 @@ from aidl_lang.common.records import record
 from aidl_lang.export.marks import Area, Curves, Group, Ink, Mark
 from aidl_lang.export.profiles import CUTS, ENGRAVE, FILL, INNER, OUTER, PLAIN, Profile
 from aidl_lang.geometry.boolean import united
-from aidl_lang.geometry.curves import (
-    Piece,
-    bounds,
-    ends,
-    is_closed,
-    larger_side,
-    locate,
-    point,
-    reverse,
-    union_bounds,
-)
+from aidl_lang.geometry.curves import Piece, larger_side, union_bounds
 from aidl_lang.geometry.drawing import SLIT, Body, Drawing, Stroke
-from aidl_lang.geometry.nearness import inside, near_pairs
+from aidl_lang.geometry.intersect import inside, near_pairs
 from aidl_lang.geometry.network import RELATIVE_TOLERANCE, Weld
-from aidl_lang.geometry.region import Face, Loop, Region, loop_area, loop_points
+from aidl_lang.geometry.region import Face, Loop, Region
 from aidl_lang.geometry.solved import SolvedModel
 from aidl_lang.geometry.styles import Style
 from aidl_lang.solver.valuation import connected
@@ -47,10 +37,10 @@ def chains(pieces: Sequence[Piece], tolerance: float) -> list[Chain]:
     circles and ellipses stand alone.
     """
     weld = Weld(tolerance)
-    nodes = [tuple(map(weld.number, ends(p))) for p in pieces]
+    nodes = [tuple(map(weld.number, p.ends)) for p in pieces]
     meeting: dict[int, list[int]] = defaultdict(list)
     for number, piece in enumerate(pieces):
-        for node in () if is_closed(piece) else nodes[number]:
+        for node in () if piece.is_closed else nodes[number]:
             meeting[node].append(number)
     left = dict.fromkeys(range(len(pieces)))
 
@@ -61,7 +51,7 @@ def chains(pieces: Sequence[Piece], tolerance: float) -> list[Chain]:
             (number,) = more
             del left[number]
             start, end = nodes[number]
-            found.append(pieces[number] if start == node else reverse(pieces[number]))
+            found.append(pieces[number] if start == node else pieces[number].reversed())
             node = end if start == node else start
         return found
 
@@ -71,7 +61,7 @@ def chains(pieces: Sequence[Piece], tolerance: float) -> list[Chain]:
         del left[number]
         start, end = nodes[number]
         after = follow(end)
-        before = [reverse(piece) for piece in reversed(follow(start))]
+        before = [piece.reversed() for piece in reversed(follow(start))]
         result.append((*before, pieces[number], *after))
     return result
 
@@ -162,7 +152,7 @@ def _apart(found: Sequence[Outline], profile: Profile) -> Iterator[Outline]:
     machines fill all closed outlines of a colour together, by alternation.
     """
     areas = [list(run) for area, run in groupby(found, key=lambda o: o.area) if area]
-    boxes = [union_bounds([bounds(piece) for o in area for piece in o.pieces]) for area in areas]
+    boxes = [union_bounds([piece.box for o in area for piece in o.pieces]) for area in areas]
     colors = [profile.color(first) for first, *_ in areas]
     pairs = [pair for pair in near_pairs(boxes, 0.0) if colors[pair[0]] == colors[pair[1]]]
     one, other = np.array(pairs, dtype=np.intp).reshape(-1, 2).T
@@ -193,12 +183,12 @@ def _bounding(stroke: Stroke, operation: str, profile: Profile, tolerance: float
 
 
 def _is_closed(pieces: Sequence[Piece], tolerance: float) -> bool:
-    start, end = ends(pieces[0])[0], ends(pieces[-1])[1]
+    start, end = pieces[0].ends[0], pieces[-1].ends[1]
     return math.dist(start, end) <= tolerance < extent(pieces)
 
 
 def extent(pieces: Iterable[Piece]) -> float:
-    return larger_side(union_bounds([bounds(piece) for piece in pieces]))
+    return larger_side(union_bounds([piece.box for piece in pieces]))
 
 
 def _cuts(model: SolvedModel, drawing: Drawing, profile: Profile) -> Iterator[Outline]:
@@ -206,7 +196,7 @@ def _cuts(model: SolvedModel, drawing: Drawing, profile: Profile) -> Iterator[Ou
     kinds = {s.path: s.kind for s in model.root.walk()}
     edges = _HoleEdges(model, drawing)
     faces = [(face, body) for body in drawing.bodies for face in body.region.faces]
-    faces.sort(key=lambda pair: significant(loop_area(pair[0].outer)))
+    faces.sort(key=lambda pair: significant(pair[0].outer.area))
     late = _late(faces)
     for number, (face, body) in enumerate(faces):
         for k, loop in enumerate(face.holes):
@@ -234,8 +224,8 @@ def _late(faces: Sequence[tuple[Face, Body]]) -> set[tuple[int, int]]:
     if len(faces) < 2:
         return set()
     openings = [(n, k, loop) for n, (face, _) in enumerate(faces) for k, loop in enumerate(face.holes)]
-    boxes = [union_bounds([*map(bounds, face.outer.pieces)]) for face, _ in faces]
-    around = [union_bounds([*map(bounds, loop.pieces)]) for *_, loop in openings]
+    boxes = [union_bounds([piece.box for piece in face.outer.pieces]) for face, _ in faces]
+    around = [union_bounds([piece.box for piece in loop.pieces]) for *_, loop in openings]
     found: set[tuple[int, int]] = set()
     for face, number in near_pairs([*boxes, *around], 0.0):
         if not face < len(faces) <= number:
@@ -250,8 +240,8 @@ def _late(faces: Sequence[tuple[Face, Body]]) -> set[tuple[int, int]]:
 
 def _holds(loop: Loop, face: Face) -> bool:
     """Tells whether most of an outline lies in a loop, on which it may end."""
-    spots = np.array([point(piece, t) for piece in face.outer.pieces for t in (0.25, 0.5, 0.75)])
-    polygon = loop_points(loop, 0.01 * extent(loop.pieces))
+    spots = np.array([piece.point(t) for piece in face.outer.pieces for t in (0.25, 0.5, 0.75)])
+    polygon = loop.polygon(0.01 * extent(loop.pieces))
     return bool(inside([polygon], spots).mean() > 0.5)
 
 
@@ -269,9 +259,9 @@ class _HoleEdges:
         ]
         self._same: dict[Piece, list[str]] = defaultdict(list)
         for path, piece in reversed(self._edges):  # inner ones first
-            for either in (piece, reverse(piece)):
+            for either in (piece, piece.reversed()):
                 self._same[either].append(path)
-        boxes = np.array([bounds(piece) for _, piece in self._edges]).reshape(-1, 4)
+        boxes = np.array([piece.box for _, piece in self._edges]).reshape(-1, 4)
         self._low, self._high = boxes[:, :2] - self._tolerance, boxes[:, 2:] + self._tolerance
 
     def owner(self, loop: Loop, body: str) -> str | None:
@@ -286,10 +276,10 @@ class _HoleEdges:
 
     def _beside(self, piece: Piece) -> Iterable[str]:
         """Returns the holes on whose edges the middle of a piece lies, inner ones first."""
-        p = point(piece, 0.5)
+        p = piece.point(0.5)
         near = np.flatnonzero(((self._low <= p) & (p <= self._high)).all(axis=1))
         found = (self._edges[k] for k in reversed(near))
-        return [path for path, edge in found if locate(edge, p, self._tolerance) is not None]
+        return [path for path, edge in found if edge.locate(p, self._tolerance) is not None]
 
 
 # --- What a cutter follows, as marks of a picture: outlines and engraved areas in the order of a profile.

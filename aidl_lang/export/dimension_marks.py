@@ -15,10 +15,10 @@ from aidl_lang.common.prose import fixed
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
 from aidl_lang.export.marks import DIMENSION, Area, Block, Curves, Ink, Mark, Text, arrowhead
-from aidl_lang.geometry.curves import Arc, Bounds, Circle, Line, Piece, Vec, ends, point, points, union_bounds
+from aidl_lang.geometry.curves import Arc, Bounds, Circle, Line, Piece, Vec, union_bounds
 from aidl_lang.geometry.dimensions.features import dot
 from aidl_lang.geometry.drawing import Drawing
-from aidl_lang.geometry.nearness import from_sides
+from aidl_lang.geometry.intersect import from_sides
 from aidl_lang.geometry.solved import Dimension, Length, Opening, Roundness
 
 # --- The marks of one dimension at a given place, in the manner of ISO 129-1: extension lines, a dimension
@@ -411,7 +411,7 @@ def _chords(pieces: Sequence[Piece]) -> Segments:
     t = np.linspace(0, 1, count + 1)
     found = [np.empty((0, 4))]
     for piece in pieces:
-        spots = np.array(ends(piece)) if isinstance(piece, Line) else points(piece, t)
+        spots = np.array(piece.ends) if isinstance(piece, Line) else piece.points(t)
         found.append(np.concatenate((spots[:-1], spots[1:]), axis=1))
     return np.concatenate(found)
 
@@ -419,7 +419,7 @@ def _chords(pieces: Sequence[Piece]) -> Segments:
 def _all_lines(placed: PlacedDimension) -> list[Segment]:
     if placed.arc is None:
         return [*placed.lines]
-    return [*placed.lines, *pairwise(point(placed.arc, k / 12) for k in range(13))]
+    return [*placed.lines, *pairwise(placed.arc.point(k / 12) for k in range(13))]
 
 
 def _array(segments: Sequence[Segment]) -> Segments:

@@ -15,7 +15,7 @@ from aidl_lang.common.prose import counted
 from aidl_lang.common.records import record
 from aidl_lang.export.dimension_marks import HEIGHT, Pen, PlacedDimension, Sheet, broken, words_of
 from aidl_lang.export.marks import DIMENSION, Group, Text
-from aidl_lang.geometry.curves import Arc, Bounds, Circle, Vec, bounds, larger_side, point, union_bounds
+from aidl_lang.geometry.curves import Arc, Bounds, Circle, Vec, larger_side, union_bounds
 from aidl_lang.geometry.dimensions import dimensions
 from aidl_lang.geometry.dimensions.features import X_AXIS, Y_AXIS, is_clipped
 from aidl_lang.geometry.drawing import Drawing
@@ -76,7 +76,9 @@ def dimensioned_to_scale(
     whole, groups = layout.make(wanted)
     pointers = [(c, placed) for c in callouts if (placed := layout.point(c)) is not None]
     rings = [d.curve for group in wanted for d in group if isinstance(d, Roundness) and d.origin == "pattern"]
-    whole = union_bounds([whole, *(pen.box_of(placed) for _, placed in pointers), *map(bounds, rings)])
+    whole = union_bounds(
+        [whole, *(pen.box_of(placed) for _, placed in pointers), *(ring.box for ring in rings)]
+    )
     more = [Group(c.name, tuple(pen.marks(placed)), {"class": "item"}) for c, placed in pointers]
     left = len(wanted) + len(callouts) - len(groups) - len(more)
     return whole, (*groups, *more), left
@@ -325,5 +327,5 @@ def _ways(curve: Circle | Arc) -> list[Vec]:
     """Returns directions from the centre to places where a leader may end."""
     if isinstance(curve, Circle):
         return [(math.cos(math.radians(a)), math.sin(math.radians(a))) for a in _TURNS]
-    spots = [point(curve, t) for t in (0.5, 0.4, 0.6, 0.25, 0.75, 0.1, 0.9)]
+    spots = [curve.point(t) for t in (0.5, 0.4, 0.6, 0.25, 0.75, 0.1, 0.9)]
     return [((x - curve.center[0]) / curve.radius, (y - curve.center[1]) / curve.radius) for x, y in spots]

@@ -21,21 +21,7 @@ from aidl_lang.export.marks import Text
 from aidl_lang.export.overlay import labels
 from aidl_lang.export.profiles import FILL, ON_PARTS, PLAIN, SCORE, Look
 from aidl_lang.geometry.arcs import as_arcs
-from aidl_lang.geometry.curves import (
-    TAU,
-    Arc,
-    Bezier,
-    Circle,
-    Ellipse,
-    EllipseArc,
-    Line,
-    Piece,
-    Vec,
-    ends,
-    point,
-    reverse,
-    round_range,
-)
+from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, EllipseArc, Line, Piece, Vec
 from aidl_lang.geometry.drawing import Drawing
 from aidl_lang.geometry.styles import Style
 
@@ -314,7 +300,7 @@ class _Entities:
         if self._tolerance is not None:
             pieces = as_arcs(pieces, outline.closed, self._tolerance)
         if outline.clockwise:
-            pieces = tuple(reverse(piece) for piece in reversed(pieces))
+            pieces = tuple(piece.reversed() for piece in reversed(pieces))
         if len(pieces) > 1 and all(isinstance(piece, Line | Arc) for piece in pieces):
             yield self._polyline(pieces, outline.closed, attributes)
         else:
@@ -324,7 +310,7 @@ class _Entities:
     def _polyline(self, pieces: Sequence[Piece], closed: bool, attributes: dict[str, Any]) -> Any:
         corners = [corner for piece in pieces for corner in self._corners(piece)]
         if not closed:
-            corners.append((*self._at(ends(pieces[-1])[1]), 0.0))
+            corners.append((*self._at(pieces[-1].ends[1]), 0.0))
         add = self._space.add_polyline2d if self._is_old else self._space.add_lwpolyline
         made = add(corners, format="xyb", close=closed, dxfattribs=attributes)
         if "linetype" in attributes:
@@ -334,12 +320,12 @@ class _Entities:
     def _corners(self, piece: Piece) -> Iterator[tuple[float, float, float]]:
         """Yields x, y and bulge, tan(sweep / 4), where a piece starts and where it is split."""
         if not isinstance(piece, Arc):
-            yield (*self._at(ends(piece)[0]), 0.0)
+            yield (*self._at(piece.ends[0]), 0.0)
             return
         parts = math.ceil(abs(piece.sweep) / LONGEST)
         bulge = math.tan(piece.sweep / parts / 4)
         for k in range(parts):
-            yield (*self._at(point(piece, k / parts)), bulge)
+            yield (*self._at(piece.point(k / parts)), bulge)
 
     def _single(self, piece: Piece, attributes: dict[str, Any]) -> Any:
         space = self._space
@@ -359,7 +345,7 @@ class _Entities:
     def _arc(self, arc: Arc, attributes: dict[str, Any]) -> Any:
         """Adds an arc; DXF runs from the first angle to the last counter-clockwise."""
         center, radius = self._at(arc.center), self._rounded(arc.radius)
-        if abs(arc.sweep) >= TAU:
+        if abs(arc.sweep) >= math.tau:
             return self._space.add_circle(center, radius, dxfattribs=attributes)
         first, last = (
             math.degrees(math.atan2(p[1] - arc.center[1], p[0] - arc.center[0])) % 360
@@ -370,17 +356,17 @@ class _Entities:
     def _ellipse(self, piece: Ellipse | EllipseArc, attributes: dict[str, Any]) -> Any:
         """Adds an ellipse; DXF has the larger half-axis first, and anomalies that run counter-clockwise."""
         major, minor, angle = piece.rx, piece.ry, piece.angle
-        first, sweep = round_range(piece)
+        first, sweep = piece.range
         if minor > major:
-            major, minor, angle, first = minor, major, angle + TAU / 4, first - TAU / 4
+            major, minor, angle, first = minor, major, angle + math.tau / 4, first - math.tau / 4
         if sweep < 0:
             first, sweep = first + sweep, -sweep
-        whole = sweep >= TAU
+        whole = sweep >= math.tau
         return self._space.add_ellipse(
             self._at(piece.center),
             self._at((major * math.cos(angle), major * math.sin(angle))),
             max(minor / major, THINNEST),
-            0.0 if whole else first % TAU,
-            TAU if whole else (first + sweep) % TAU,
+            0.0 if whole else first % math.tau,
+            math.tau if whole else (first + sweep) % math.tau,
             dxfattribs=attributes,
         )

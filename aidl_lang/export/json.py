@@ -18,7 +18,7 @@ from aidl_lang.common.source import Span
 from aidl_lang.geometry.boolean import Contact
 from aidl_lang.geometry.curves import KINDS
 from aidl_lang.geometry.drawing import Drawing
-from aidl_lang.geometry.region import Loop, Measures, Region, face_polygons
+from aidl_lang.geometry.region import Loop, Measures, Region
 from aidl_lang.geometry.solved import (
     Box,
     Finish,
@@ -161,7 +161,7 @@ def _region(region: Region, measures: Measures, tolerance: float) -> Json:
         "geometry": {
             "type": "MultiPolygon",
             "coordinates": [
-                [[*ring, ring[0]] for ring in (p.tolist() for p in face_polygons(face, tolerance))]
+                [[*ring, ring[0]] for ring in (p.tolist() for p in face.polygons(tolerance))]
                 for face in region.faces
             ],
         },

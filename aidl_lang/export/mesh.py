@@ -23,7 +23,7 @@ from aidl_lang.geometry.curves import LARGEST
 from aidl_lang.geometry.drawing import Body, Stroke
 from aidl_lang.geometry.legibility import owner
 from aidl_lang.geometry.parts import GROUND, Plane, placement_notes, planes, thickness_of
-from aidl_lang.geometry.region import Region, face_polygons
+from aidl_lang.geometry.region import Region
 
 # --- Common to the three-dimensional formats: bodies in their planes, with their thickness.
 
@@ -182,7 +182,7 @@ def _mesh(placed: PlacedBody) -> Mesh:
     # About its own centre, so that no digits are lost far out.
     center = np.array(((left + right) / 2, (bottom + top) / 2))
     tolerance = max(FINEST, FINENESS * max(right - left, top - bottom))
-    faces = [[p - center for p in face_polygons(face, tolerance)] for face in body.region.faces]
+    faces = [[p - center for p in face.polygons(tolerance)] for face in body.region.faces]
     made = _extruded(faces, thickness, [_tool(r, thickness, center, tolerance) for r in placed.recesses])
     if made is None:
         message = f"`{body.path}` cannot be made a solid of triangles: it is too large or too thin for them"
@@ -201,7 +201,7 @@ def _tool(
     bottom = thickness - recess.depth
     made = []
     for face in recess.region.faces:
-        polygons = [p - center for p in face_polygons(face, tolerance)]
+        polygons = [p - center for p in face.polygons(tolerance)]
         if recess.narrowing:
             middle = polygons[0].mean(axis=0)
             radius, sides = float(np.hypot(*(polygons[0][0] - middle))), len(polygons[0])

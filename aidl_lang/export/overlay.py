@@ -16,10 +16,10 @@ from aidl_lang.common.running import checkpoint
 from aidl_lang.export import marks
 from aidl_lang.export.job import Job
 from aidl_lang.export.marks import CHARACTER, Dot, Frame, Mark, Text, widened
-from aidl_lang.geometry.curves import Bounds, Vec, are_near, bounds, union_bounds
+from aidl_lang.geometry.curves import Bounds, Vec, are_near, union_bounds
 from aidl_lang.geometry.drawing import Drawing
-from aidl_lang.geometry.nearness import from_sides, inside
-from aidl_lang.geometry.region import COARSE, Region, piece_points, region_polygons
+from aidl_lang.geometry.intersect import from_sides, inside
+from aidl_lang.geometry.region import COARSE, Region, piece_points
 from aidl_lang.geometry.solved import ConstraintReport, SolvedGeometry, SolvedModel, SolvedStructure
 
 # --- Names and numbers of parts on sheets, each where its part has room for it.
@@ -45,7 +45,7 @@ def labels(job: Job) -> Iterator[Text]:
         words += [body.path.removeprefix(f"{root}.")] if "names" in asked else []
         label = " ".join(words)
         pieces = (piece for stroke in job.drawing.strokes for piece in stroke.pieces)
-        engraved = [piece_points(piece, COARSE) for piece in pieces if are_near(bounds(piece), body.box)]
+        engraved = [piece_points(piece, COARSE) for piece in pieces if are_near(piece.box, body.box)]
         middle, size = _room(body.region, engraved, CHARACTER * len(label))
         at = middle[0], middle[1] - _BASELINE * size
         yield Text(at, label, size, marks.NAME, "middle", halo=False)
@@ -55,7 +55,7 @@ def _room(region: Region, engraved: list[NDArray[np.float64]], width: float) -> 
     """Returns the middle and the size of the largest text, so many times as wide as high, that lies in the
     material beside what is engraved, as near to the middle of the part as there is room.
     """
-    shrunk = [polygon / (width, 1.0) for polygon in region_polygons(region, COARSE)]
+    shrunk = [polygon / (width, 1.0) for polygon in region.polygons(COARSE)]
     sides = [_sides(np.concatenate((polygon, polygon[:1]))) for polygon in shrunk]
     sides += [_sides(line / (width, 1.0)) for line in engraved]
     outline = np.concatenate(shrunk)
@@ -294,7 +294,7 @@ def _box_of(things: Mapping[str, _Thing], path: str) -> Bounds | None:
     value = thing.values.get(path.removeprefix(known).lstrip(".") or "at")
     if _is_point(value):
         return value[0], value[1], value[0], value[1]
-    boxes = [bounds(part.curve) for part in thing.walk() if part.curve is not None]
+    boxes = [part.curve.box for part in thing.walk() if part.curve is not None]
     return union_bounds(boxes) if boxes else None
 
 

@@ -35,19 +35,7 @@ from aidl_lang.export.marks import (
     spaced,
 )
 from aidl_lang.export.svg import to_svg
-from aidl_lang.geometry.curves import (
-    TAU,
-    Bezier,
-    Bounds,
-    Circle,
-    Line,
-    Piece,
-    Vec,
-    derivative,
-    ends,
-    point,
-    round_range,
-)
+from aidl_lang.geometry.curves import Bezier, Bounds, Circle, Line, Piece, Vec
 from aidl_lang.version import __version__
 
 # --- The font of texts in pictures, for formats that embed it.
@@ -118,7 +106,7 @@ def to_png(picture: Picture, pixels: int) -> bytes:
 POINTS_PER_MM = 72 / 25.4
 LONGEST = 14_400 / POINTS_PER_MM
 """Sides of pages end here (PDF 32000-1, annex C)."""
-_STEP = TAU / 16
+_STEP = math.tau / 16
 _FILLED_AND_STROKED = 2
 _WHITE = "#ffffff"
 _LAYERS = 40
@@ -317,7 +305,7 @@ def _add_pieces(path: Any, pieces: Iterable[Piece]) -> None:
     """Adds curves one after the other, moving only where one does not start at the end of the one before."""
     at: Vec | None = None
     for piece in pieces:
-        start, end = ends(piece)
+        start, end = piece.ends
         if start != at:
             path.moveTo(*start)
         if isinstance(piece, Line):
@@ -333,14 +321,14 @@ def _cubics(piece: Piece) -> Iterator[tuple[Vec, Vec, Vec, Vec]]:
         yield piece.p0, piece.p1, piece.p2, piece.p3
         return
     assert not isinstance(piece, Line)
-    sweep = round_range(piece)[1]
+    sweep = piece.range[1]
     count = max(1, math.ceil(abs(sweep) / _STEP - 1e-9))
     # The handles that meet the arc in its middle (Farin, Curves and Surfaces, ch. 4): 4/3 tan(a/4) times the
     # derivative by the angle, which is that by the parameter over the sweep.
     reach = 4 / 3 * math.tan(sweep / count / 4) / sweep
     for k in range(count):
         t0, t1 = k / count, (k + 1) / count
-        (x0, y0), (x1, y1) = point(piece, t0), point(piece, t1)
-        (u0, v0), (u1, v1) = derivative(piece, t0), derivative(piece, t1)
+        (x0, y0), (x1, y1) = piece.point(t0), piece.point(t1)
+        (u0, v0), (u1, v1) = piece.derivative(t0), piece.derivative(t1)
         handles = (x0 + reach * u0, y0 + reach * v0), (x1 - reach * u1, y1 - reach * v1)
         yield (x0, y0), *handles, (x1, y1)

@@ -34,20 +34,10 @@ from aidl_lang.export.marks import (
 )
 from aidl_lang.export.overlay import explain, labels
 from aidl_lang.geometry.boolean import united, without
-from aidl_lang.geometry.curves import (
-    Bounds,
-    Line,
-    Piece,
-    Vec,
-    all_bounds,
-    bounds,
-    larger_side,
-    points,
-    union_bounds,
-)
+from aidl_lang.geometry.curves import Bounds, Line, Piece, Vec, larger_side, union_bounds
 from aidl_lang.geometry.drawing import Body, Drawing, Stroke
-from aidl_lang.geometry.nearness import inside
-from aidl_lang.geometry.region import Polygon, Region, face_polygons, piece_points, region_bounds
+from aidl_lang.geometry.intersect import inside
+from aidl_lang.geometry.region import Polygon, Region, piece_points
 from aidl_lang.geometry.solved import SolvedModel, SolvedStructure
 from aidl_lang.geometry.styles import DASH, GAP, Shade, Style, layers, stacked, united_parts
 
@@ -180,7 +170,7 @@ class _Shape:
         air = 0.0
         match mark:
             case Area():
-                polygons = face_polygons(mark.face, DEVIATION)
+                polygons = mark.face.polygons(DEVIATION)
                 self._lines = [np.concatenate((p, p[:1])) for p in polygons]
                 self._filled = polygons if mark.fill else []
                 air = mark.ink.width / 2 if mark.ink else 0.0
@@ -256,7 +246,7 @@ def _whole(job: Job) -> Picture:
     options = job.options
     shadows = [] if options.for_cutter else list(_shadows(job.model.root, job.drawing))
     box = _picture_box(job.model, job.drawing, options.show)
-    box = union_bounds([box, *(region_bounds(Region((area.face,))) for _, area in shadows)])
+    box = union_bounds([box, *(Region((area.face,)).box for _, area in shadows)])
     size = larger_side(box) or 1.0
     seen, dimensions = box, tuple[Group, ...]()
     if options.dimension:
@@ -465,7 +455,7 @@ class Halos:
 
 
 def _box(stroke: Stroke) -> Bounds:
-    return union_bounds([bounds(piece) for piece in stroke.pieces])
+    return union_bounds([piece.box for piece in stroke.pieces])
 
 
 # --- Gradients of fills: light and shade on round things, and fills that go over into another colour.
@@ -490,7 +480,7 @@ _STEPS = np.linspace(0.0, 1.0, 9)
 def gradient_of(shade: Shade, color: str, outline: Sequence[Piece]) -> Gradient:
     """Returns the fill of a colour in what has an outline, of which some may be hidden."""
     stops = tuple(Stop(share, _toned(color, tone)) for share, tone in _LIGHT.get(shade.kind, ()))
-    left, bottom, right, top = union_bounds(all_bounds(outline))
+    left, bottom, right, top = union_bounds([piece.box for piece in outline])
     width, height = right - left, top - bottom
     if shade.way is None:
         center = (left + width / 2, bottom + height / 2)
@@ -500,7 +490,7 @@ def gradient_of(shade: Shade, color: str, outline: Sequence[Piece]) -> Gradient:
         spot = (left + _SPOT[0] * width, bottom + _SPOT[1] * height)
         return Gradient(spot, spot, stops, _REACH * max(width, height))
     ways = np.array([math.cos(math.radians(shade.way)), math.sin(math.radians(shade.way))])
-    spots = np.concatenate([points(piece, _STEPS) for piece in outline])
+    spots = np.concatenate([piece.points(_STEPS) for piece in outline])
     along = spots @ ways
     middle = np.array([(left + right) / 2, (bottom + top) / 2])
     start, end = (middle + (reach - middle @ ways) * ways for reach in (along.min(), along.max()))

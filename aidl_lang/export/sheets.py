@@ -20,7 +20,7 @@ from aidl_lang.geometry.curves import union_bounds
 from aidl_lang.geometry.drawing import SLIT, Drawing, Stroke
 from aidl_lang.geometry.offsets import offset
 from aidl_lang.geometry.parts import Motion, Part, Size, alike, drawn, parts_of, smallest_size
-from aidl_lang.geometry.region import Face, Loop, Region, area, length, region_bounds
+from aidl_lang.geometry.region import Face, Loop, Region, length
 from aidl_lang.geometry.sheets import NestingError, laid_out
 from aidl_lang.geometry.solved import SolvedModel
 
@@ -103,7 +103,7 @@ def cut_list(job: Job) -> CutList:
                 sum(p.body.style.quantity for p in group),
                 job.options.thickness if thickness is None else thickness,
                 smallest_size(part),
-                area(part.body.region),
+                part.body.region.area,
                 sum(map(length, cuts)),
             )
         )
@@ -221,7 +221,7 @@ def _widened(job: Job, by: float, progress: Progress) -> tuple[Drawing, dict[str
             message = f"holes or gaps of `{body.path}` are narrower than a cut of {fixed(2 * by)} mm"
             raise ExportError("E0924", message, "widen them, or give a smaller `--kerf`")
         region = _smoothed(region, job.options.tolerance)
-        bodies.append(replace(body, region=region, box=region_bounds(region)))
+        bodies.append(replace(body, region=region))
     slits = {path: found for path, (_, found) in filled.items()}
     cuts = tuple(
         Stroke(path, path, (slit.way,), drawing.styles[path], SLIT)

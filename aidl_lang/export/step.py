@@ -48,19 +48,7 @@ from aidl_lang.common.running import checkpoint
 from aidl_lang.export.job import Exported, ExportError, Job
 from aidl_lang.export.mesh import Recess, placed_bodies, placed_strokes
 from aidl_lang.geometry.boolean import jointed
-from aidl_lang.geometry.curves import (
-    TAU,
-    Arc,
-    Bezier,
-    Circle,
-    Ellipse,
-    EllipseArc,
-    Line,
-    Piece,
-    Vec,
-    ends,
-    round_range,
-)
+from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, EllipseArc, Line, Piece, Vec
 from aidl_lang.geometry.parts import Plane, placement_notes
 from aidl_lang.geometry.region import Face, Loop
 from aidl_lang.geometry.styles import Style
@@ -72,7 +60,7 @@ from aidl_lang.version import __version__
 # Lines become planes and arcs cylinders, all else linear extrusions; nothing is approximated.
 
 _UP = gp_Dir(0.0, 0.0, 1.0)
-_WHOLE_TURN = TAU - 1e-12
+_WHOLE_TURN = math.tau - 1e-12
 
 
 class Shapes:
@@ -111,13 +99,13 @@ class Shapes:
 
     def curves(self, pieces: Iterable[Piece]) -> list[TopoDS_Edge]:
         self._vertices.clear()
-        return [self._edge(piece, *map(self._vertex, ends(piece))) for piece in map(_upright, pieces)]
+        return [self._edge(piece, *map(self._vertex, piece.ends)) for piece in map(_upright, pieces)]
 
     def _wire(self, loop: Loop) -> TopoDS_Shape:
         made = TopoDS_Wire()
         self._build.MakeWire(made)
         pieces = [_upright(piece) for piece in loop.pieces]
-        corners = [self._vertex(ends(piece)[0]) for piece in pieces]
+        corners = [self._vertex(piece.ends[0]) for piece in pieces]
         for piece, start, end in zip(pieces, corners, corners[1:] + corners[:1], strict=True):
             self._build.Add(made, self._edge(piece, start, end))
         made.Closed(True)
@@ -182,14 +170,14 @@ def _curve(piece: Piece) -> tuple[Any, float, float]:
             for number, p in enumerate((p0, p1, p2, p3), 1):
                 poles.SetValue(number, _point(p))
             return Geom_BezierCurve(poles), 0.0, 1.0
-    first, sweep = round_range(piece)
-    first = min(first, first + sweep) % TAU
+    first, sweep = piece.range
+    first = min(first, first + sweep) % math.tau
     last = first + abs(sweep)
     match piece:
         case Ellipse() | EllipseArc():
             return Geom_Ellipse(_axes(piece.center, piece.angle), piece.rx, piece.ry), first, last
         case Arc() if abs(sweep) >= _WHOLE_TURN:
-            return Geom_Circle(_axes(piece.center, first), piece.radius), 0.0, TAU
+            return Geom_Circle(_axes(piece.center, first), piece.radius), 0.0, math.tau
         case Arc() | Circle():
             return Geom_Circle(_axes(piece.center, 0.0), piece.radius), first, last
 

@@ -18,19 +18,7 @@ from aidl_lang.common.prose import fixed
 from aidl_lang.common.running import checkpoint
 from aidl_lang.export.job import UNITS
 from aidl_lang.export.marks import Area, Curves, Dot, Frame, Gradient, Group, Ink, Mark, Picture, Text, scaled
-from aidl_lang.geometry.curves import (
-    Arc,
-    Bezier,
-    Bounds,
-    Circle,
-    Ellipse,
-    EllipseArc,
-    Line,
-    Piece,
-    Vec,
-    ends,
-    point,
-)
+from aidl_lang.geometry.curves import Arc, Bezier, Bounds, Circle, Ellipse, EllipseArc, Line, Piece, Vec
 from aidl_lang.geometry.region import Face, Loop
 
 # --- Loads `svgwrite` without the modules that drawings do not use, which triple its loading time.
@@ -105,7 +93,7 @@ def _loop_path(loop: Loop) -> str:
     pieces = loop.pieces
     # The last straight way home is what Z draws.
     drawn = pieces[:-1] if isinstance(pieces[-1], Line) else pieces
-    return f"M{xy(ends(pieces[0])[0])}{''.join(map(_segment, drawn))}Z"
+    return f"M{xy(pieces[0].ends[0])}{''.join(map(_segment, drawn))}Z"
 
 
 def open_path(pieces: Sequence[Piece]) -> str:
@@ -116,7 +104,7 @@ def open_path(pieces: Sequence[Piece]) -> str:
             path += _whole(piece, clockwise=False)
             at = None
             continue
-        start, end = ends(piece)
+        start, end = piece.ends
         path += _segment(piece) if start == at else f"M{xy(start)}{_segment(piece)}"
         at = end
     return path
@@ -125,7 +113,7 @@ def open_path(pieces: Sequence[Piece]) -> str:
 def _whole(piece: Piece, clockwise: bool) -> str:
     """Returns a closed curve as two halves, since an `A` that ends where it starts draws nothing."""
     assert isinstance(piece, Circle | Ellipse)
-    start, middle = xy(point(piece, 0.0)), xy(point(piece, 0.5))
+    start, middle = xy(piece.point(0.0)), xy(piece.point(0.5))
     flag = int(clockwise)
     radii = _radii(piece)
     return f"M{start}A{radii} 0 {flag} {middle}A{radii} 0 {flag} {start}Z"
@@ -147,7 +135,7 @@ def _segment(piece: Piece) -> str:
     flag = int(piece.sweep < 0)
     if abs(piece.sweep) > 1.9 * math.pi:
         # Nearly full turns lose their direction in rounding: go by way of the middle.
-        return f"A{_radii(piece)} 0 {flag} {xy(point(piece, 0.5))}A{_radii(piece)} 0 {flag} {xy(piece.end)}"
+        return f"A{_radii(piece)} 0 {flag} {xy(piece.point(0.5))}A{_radii(piece)} 0 {flag} {xy(piece.end)}"
     # Of two equal halves no machine says otherwise than another.
     is_large = abs(piece.sweep) > math.pi + _HALF
     return f"A{_radii(piece)} {int(is_large)} {flag} {xy(piece.end)}"

@@ -16,24 +16,8 @@ import numpy as np
 
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
-from aidl_lang.geometry.curves import (
-    TAU,
-    Arc,
-    Bezier,
-    Circle,
-    Floats,
-    Line,
-    Piece,
-    Vec,
-    ends,
-    point,
-    points,
-    reverse,
-    round_range,
-    turn_between,
-)
-from aidl_lang.geometry.finishing import direction
-from aidl_lang.geometry.nearness import from_sides
+from aidl_lang.geometry.curves import Arc, Bezier, Circle, Floats, Line, Piece, Vec, turn_between
+from aidl_lang.geometry.intersect import from_sides
 from aidl_lang.geometry.region import Face, Loop, Region, length
 
 SHORTEST = 3.0
@@ -80,11 +64,11 @@ class _Stretch:
 
     @property
     def start(self) -> Vec:
-        return ends(self.pieces[0])[0]
+        return self.pieces[0].ends[0]
 
     @property
     def end(self) -> Vec:
-        return ends(self.pieces[-1])[1]
+        return self.pieces[-1].ends[1]
 
     @property
     def length(self) -> float:
@@ -96,7 +80,7 @@ class _Outline:
 
     def __init__(self, pieces: Sequence[Piece], closed: bool, tolerance: float) -> None:
         self._whole, self._closed = tuple(pieces), closed
-        spots = np.concatenate([points(p, _PROBES) for p in pieces])
+        spots = np.concatenate([p.points(_PROBES) for p in pieces])
         size = float(np.ptp(spots, axis=0).max())
         self._tolerance = min(max(tolerance, FINEST * size), COARSEST * size)
         self._shortest, self._joined = SHORTEST * self._tolerance, JOINED * self._tolerance
@@ -121,7 +105,7 @@ class _Outline:
         exact = [isinstance(p, Line | Arc) and length(p) >= self._joined for p in pieces]
         runs_on = [
             not (exact[k - 1] or exact[k])
-            and abs(turn_between(direction(pieces[k - 1], 1.0), direction(pieces[k], 0.0))) < _SMOOTH
+            and abs(turn_between(pieces[k - 1].direction(1.0), pieces[k].direction(0.0))) < _SMOOTH
             for k in range(count)
         ]
         first = runs_on.index(False) if self._closed and False in runs_on else 0
@@ -171,7 +155,7 @@ class _Outline:
             return start if before is None else end
         middle = (start[0] + end[0]) / 2, (start[1] + end[1]) / 2
         reach = _LEEWAY * 2 * self._tolerance
-        tip = _crossing(start, direction(before.pieces[-1], 1.0), end, direction(after.pieces[0], 0.0))
+        tip = _crossing(start, before.pieces[-1].direction(1.0), end, after.pieces[0].direction(0.0))
         if tip is not None and math.dist(tip, middle) <= reach:
             return (tip[0] + middle[0]) / 2, (tip[1] + middle[1]) / 2
         return middle if math.dist(start, end) <= reach else None
@@ -180,7 +164,7 @@ class _Outline:
         first = stretch.pieces[0]
         if len(stretch.pieces) == 1 and isinstance(first, Line):
             yield Line(start, end)
-        elif len(stretch.pieces) == 1 and isinstance(first, Arc) and ends(first) == (start, end):
+        elif len(stretch.pieces) == 1 and isinstance(first, Arc) and first.ends == (start, end):
             yield first
         else:
             fit = _Fit(stretch.pieces, start, end, self._tolerance)
@@ -205,10 +189,10 @@ class _Fit:
         spots, self._at = [], list[tuple[Piece, float]]()
         for piece in pieces:
             count = _samples(piece, tolerance)
-            spots.append(points(piece, np.arange(count) / count))
+            spots.append(piece.points(np.arange(count) / count))
             self._at += [(piece, k / count) for k in range(count)]
         self._at.append((pieces[-1], 1.0))
-        spots.append(np.array([point(pieces[-1], 1.0)]))
+        spots.append(np.array([pieces[-1].point(1.0)]))
         self._spots = np.concatenate(spots)
         steps = np.hypot(*np.diff(self._spots, axis=0).T)
         self._along = np.concatenate(([0.0], np.cumsum(steps)))
@@ -250,7 +234,8 @@ class _Fit:
         start, end = self._place(i), self._place(j)
         if j - i == 1 or self._along[j] - self._along[i] <= self._tolerance:
             return [Line(start, end)] if start != end else []
-        found = _pair(start, direction(*self._at[i]), end, direction(*self._at[j]))
+        (first, t0), (last, t1) = self._at[i], self._at[j]
+        found = _pair(start, first.direction(t0), end, last.direction(t1))
         return found if found is not None and self._is_near(found, self._spots[i : j + 1]) else None
 
     def _is_near(self, arcs: Sequence[Piece], spots: Floats) -> bool:
@@ -258,7 +243,7 @@ class _Fit:
         off = np.minimum.reduce([_distances(arc, spots) for arc in arcs])
         if off.max() > self._tolerance:
             return False
-        probes = np.concatenate([points(arc, _PROBES) for arc in arcs])
+        probes = np.concatenate([arc.points(_PROBES) for arc in arcs])
         gaps = from_sides(probes[:, None, :] - spots[:-1], np.diff(spots, axis=0)).min(axis=1)
         return bool(gaps.max() <= self._tolerance)
 
@@ -272,9 +257,8 @@ def _samples(piece: Piece, tolerance: float) -> int:
         bend = float(np.hypot(*np.diff(p, n=2, axis=0).T).max())
         count = math.sqrt(0.75 * bend / (_GRAIN * tolerance))
     else:
-        radius = piece.radius if isinstance(piece, Arc | Circle) else max(piece.rx, piece.ry)
-        sweep = abs(round_range(piece)[1])
-        count = sweep * math.sqrt(radius / (8 * _GRAIN * tolerance))
+        _, rx, ry, *_, sweep = piece.frame
+        count = abs(sweep) * math.sqrt(max(rx, ry) / (8 * _GRAIN * tolerance))
     return max(_FEWEST, min(_MOST, math.ceil(count)))
 
 
@@ -303,7 +287,7 @@ def _pair(start: Vec, leaving: Vec, end: Vec, arriving: Vec) -> list[Piece] | No
         return None
     if isinstance(first, Line) and isinstance(second, Line):
         return [Line(start, end)]
-    return [first, reverse(second)]
+    return [first, second.reversed()]
 
 
 def _arc(start: Vec, way: Vec, end: Vec) -> Arc | Line | None:
@@ -323,13 +307,13 @@ def _arc(start: Vec, way: Vec, end: Vec) -> Arc | Line | None:
 
 
 def _distances(piece: Piece, spots: Floats) -> Floats:
-    (x0, y0), (x1, y1) = ends(piece)
+    (x0, y0), (x1, y1) = piece.ends
     if isinstance(piece, Line):
         return from_sides(spots - (x0, y0), np.array((x1 - x0, y1 - y0)))
     assert isinstance(piece, Arc)
     from_center = spots - piece.center
     turned = np.arctan2(from_center[:, 1], from_center[:, 0]) - piece.start_angle
-    turned = np.mod(turned * math.copysign(1.0, piece.sweep), TAU)
+    turned = np.mod(turned * math.copysign(1.0, piece.sweep), math.tau)
     off: Floats = np.abs(np.hypot(*from_center.T) - piece.radius)
     at_ends = np.minimum(np.hypot(*(spots - (x0, y0)).T), np.hypot(*(spots - (x1, y1)).T))
     return np.where(turned <= abs(piece.sweep), off, at_ends)
@@ -369,7 +353,7 @@ def _without(loop: Loop, cut: float, slits: list[Slit], *, is_hole: bool) -> Loo
     if is_hole and len(pieces) == 4:
         for k in (0, 1):
             a, tip, b, end = (*pieces[k:], *pieces[:k])
-            if (slit := _slit((a, tip, b), cut, point(end, 0.5), -cut / 2)) is not None:
+            if (slit := _slit((a, tip, b), cut, end.point(0.5), -cut / 2)) is not None:
                 slits.append(slit)
                 return None
     first = next((k for k in (-2, -1) if _open(pieces[k:] + pieces[:k], cut) is not None), 0)
@@ -391,7 +375,7 @@ def _open(pieces: Sequence[Piece], cut: float) -> tuple[Slit, Line] | None:
     if len(pieces) < 3 or not isinstance(pieces[0], Line) or not isinstance(pieces[2], Line):
         return None
     mouth = Line(pieces[0].start, pieces[2].end)
-    slit = _slit(pieces[:3], cut, point(mouth, 0.5), cut / 2)
+    slit = _slit(pieces[:3], cut, mouth.point(0.5), cut / 2)
     return None if slit is None else (slit, mouth)
 
 
@@ -402,7 +386,7 @@ def _slit(sides: Sequence[Piece], cut: float, end: Vec, beyond: float) -> Slit |
     a, tip, b = sides
     if not isinstance(a, Line) or not isinstance(b, Line):
         return None
-    (ax, ay), (bx, by) = ((s.end[0] - s.start[0], s.end[1] - s.start[1]) for s in (a, b))
+    (ax, ay), (bx, by) = a.way, b.way
     long, other = math.hypot(ax, ay), math.hypot(bx, by)
     across = (b.start[0] - a.end[0], b.start[1] - a.end[1])
     # Material lies to the left of an outline, so that the way around a gap turns to the right.
@@ -411,7 +395,7 @@ def _slit(sides: Sequence[Piece], cut: float, end: Vec, beyond: float) -> Slit |
         return None
     if abs(ax * by - ay * bx) > _PARALLEL * long * other or ax * bx + ay * by > 0:
         return None
-    x, y = start = point(tip, 0.5)
+    x, y = start = tip.point(0.5)
     far = math.dist(start, end)
     ux, uy = (end[0] - x) / far, (end[1] - y) / far
     ends = (x + ux * cut / 2, y + uy * cut / 2), (end[0] + ux * beyond, end[1] + uy * beyond)

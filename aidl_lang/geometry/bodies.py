@@ -8,40 +8,15 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import field, replace
 from itertools import count
 
-from aidl_lang.common.diagnostics import Diagnostic
+from aidl_lang.common.diagnostics import Diagnostic, Label
 from aidl_lang.common.prose import named
 from aidl_lang.common.records import record
-from aidl_lang.geometry.curves import (
-    TAU,
-    Arc,
-    Bezier,
-    Line,
-    Piece,
-    Vec,
-    bounds,
-    ends,
-    is_closed,
-    larger_side,
-    part,
-)
+from aidl_lang.geometry.curves import Arc, Bezier, Line, Piece, Vec, larger_side
 from aidl_lang.geometry.faces import OwnFace, OwnFaces, Shape, own_faces, union_of
-from aidl_lang.geometry.nearness import near_pairs
+from aidl_lang.geometry.intersect import near_pairs
 from aidl_lang.geometry.network import Network
-from aidl_lang.geometry.sections import (
-    Section,
-    Traced,
-    box_within,
-    boxes_meet,
-    covers,
-    difference,
-    holes_of,
-    inside_mask,
-    intersection,
-    is_nothing,
-    trace_all,
-    union,
-)
-from aidl_lang.geometry.solved import SolvedGeometry, SolvedStructure, as_geometry
+from aidl_lang.geometry.sections import Section, Traced, trace_all, union
+from aidl_lang.geometry.solved import SolvedGeometry, SolvedStructure, as_geometry, at
 
 # --- What structures are clipped to, in the network of curves: solids and holes lie inside of it.
 
@@ -173,23 +148,6 @@ class LooseCurves:
 
 
 @record()
-class IdleHole:
-    """A hole that removes nothing from the structure that holds it."""
-
-    hole: SolvedStructure
-    holder: SolvedStructure | None
-
-
-@record()
-class FilledHole:
-    """A hole whose void is material again in the structure above."""
-
-    hole: SolvedStructure
-    holder: SolvedStructure
-    filler: SolvedStructure | None
-
-
-@record()
 class CoveredHoles:
     """Holes of a face that other faces of its structure cover."""
 
@@ -208,7 +166,7 @@ class CrossedOutline:
     places: tuple[Vec, ...]
 
 
-Finding = InnerLoop | LooseCurves | IdleHole | FilledHole | CoveredHoles | CrossedOutline
+Finding = InnerLoop | LooseCurves | CoveredHoles | CrossedOutline | Diagnostic
 
 
 @record(frozen=False)
@@ -241,7 +199,7 @@ class Bodies:
         inner = [self.cut(c) for c in hole.structures if c.kind == "hole"]
         islands = [m for c in hole.structures if c.kind != "hole" for m in self.masses(c)]
         taken = union([c.section for c in inner])
-        islands = [replace(m, section=difference(m.section, taken)) for m in islands]
+        islands = [replace(m, section=m.section - taken) for m in islands]
         islands += [m for c in inner for m in c.islands]
         holes = ([] if own is None else [Void(hole, own)]) + [v for c in inner for v in c.holes]
         if holes:
@@ -273,32 +231,32 @@ class Bodies:
         """Returns the faces of a structure as far as they lie in what it is clipped to."""
         if (clip := self.clips.get(structure.path)) is None:
             return faces
-        inner = [replace(face, section=intersection(face.section, clip)) for face in faces]
-        return [face for face in inner if not is_nothing(face.section)]
+        inner = [replace(face, section=face.section & clip) for face in faces]
+        return [face for face in inner if not face.section.is_nothing]
 
     def inner_pieces(self, structure: SolvedStructure, number: int) -> tuple[Piece, ...]:
         """Returns a curve of a structure as far as it lies in what the structure is clipped to."""
         if (clip := self.clips.get(structure.path)) is None:
             return (self.network.curves[number],)
         uses = self.network.uses[number]
-        within = inside_mask(clip, self.network.midpoints([edge for edge, _ in uses])) if uses else ()
+        within = clip.mask(self.network.midpoints([edge for edge, _ in uses])) if uses else ()
         return tuple(self.network.piece(use) for use, is_in in zip(uses, within, strict=True) if is_in)
 
     def _find_inner_loops(self, structure: SolvedStructure, faces: list[OwnFace]) -> None:
         """Faces that the others cover; of two alike the later one."""
         beside: list[list[int]] = [[] for _ in faces]
-        for i, j in near_pairs([face.section.bounds() for face in faces], 0.0):
+        for i, j in near_pairs([face.section.box for face in faces], 0.0):
             beside[i].append(j)
             beside[j].append(i)
         dropped: set[int] = set()
         for number in reversed(range(len(faces))):
             face = faces[number]
             near = [faces[i] for i in sorted(beside[number]) if i not in dropped]
-            near = [f for f in near if boxes_meet(face.section, f.section)]
-            around = [f for f in near if box_within(face.section, f.section)]
+            near = [f for f in near if face.section.may_meet(f.section)]
+            around = [f for f in near if face.section.is_boxed_by(f.section)]
             if not near or not (around or len(near) > 1):
                 continue
-            if covers(union_of(near), face.section):
+            if union_of(near).covers(face.section):
                 dropped.add(number)
                 names = tuple(g for f in around or near for g in f.geometries)
                 self.findings.append(InnerLoop(structure, face, names))
@@ -312,11 +270,11 @@ class Bodies:
         if not others or face.section.num_contour() == 1:
             return
         rest, covered, by = union_of(others), 0, dict[str, SolvedGeometry]()
-        for hole in holes_of(face.section):
-            if covers(rest, hole):
+        for hole in face.section.holes():
+            if rest.covers(hole):
                 covered += 1
-                near = [f for f in others if boxes_meet(f.section, hole)]
-                alone = next((f for f in near if covers(f.section, hole)), None)
+                near = [f for f in others if f.section.may_meet(hole)]
+                alone = next((f for f in near if f.section.covers(hole)), None)
                 by.update((g.path, g) for f in ([alone] if alone else near) for g in f.geometries)
         if covered:
             self.findings.append(CoveredHoles(structure, face, covered, tuple(by.values())))
@@ -327,14 +285,14 @@ class Bodies:
         islands = [island for c in cuts for island in c.islands]
         before = union([*([] if own is None else [own]), *(m.section for m in children)])
         taken = union([c.section for c in cuts])
-        after = difference(before, taken)
+        after = before - taken
         after = union([after, *(m.section for m in islands)]) if islands else after
         kept = self._voids(solid, before, cuts, taken)
         if islands:
             kept = self._still_open(solid, kept, after, islands)
         for m in children:
             kept += self._still_open(solid, m.voids, after, children)
-        if after.is_empty():
+        if after.is_empty:
             return []
         self.sections[solid.path] = after
         for m in (*children, *islands):
@@ -350,9 +308,9 @@ class Bodies:
         if cuts:
             taken = union([c.section for c in cuts])
             self._voids(structure, union([m.section for m in masses]), cuts, taken)
-            masses = [replace(m, section=difference(m.section, taken)) for m in masses]
+            masses = [replace(m, section=m.section - taken) for m in masses]
             masses += [island for c in cuts for island in c.islands]
-        return [m for m in masses if not m.section.is_empty()]
+        return [m for m in masses if not m.section.is_empty]
 
     def _voids(
         self, holder: SolvedStructure, material: Section, cuts: Sequence[Cut], taken: Section
@@ -362,11 +320,11 @@ class Bodies:
         near = _around(material, [hole.section for cut in cuts for hole in cut.holes], taken)
         for cut in cuts:
             for hole in cut.holes:
-                removed = intersection(next(near), hole.section)
-                if not is_nothing(removed):
+                removed = next(near) & hole.section
+                if not removed.is_nothing:
                     voids.append(Void(hole.hole, removed))
-                elif all(is_nothing(intersection(m.section, hole.section)) for m in cut.islands):
-                    self.findings.append(IdleHole(hole.hole, holder))
+                elif not any(m.section.overlaps(hole.section) for m in cut.islands):
+                    self.findings.append(idle_hole(hole.hole, holder))
         return voids
 
     def _still_open(
@@ -376,14 +334,14 @@ class Bodies:
 
         What a void was cut from does not cover it, so it may be among the others.
         """
-        if not voids or is_nothing(intersection(material, union([v.section for v in voids]))):
+        if not voids or not material.overlaps(union([v.section for v in voids])):
             return list(voids)
         kept = []
         for void in voids:
-            if covers(material, void.section):
-                near = (m for m in others if boxes_meet(m.section, void.section))
-                filler = next((m.structure for m in near if covers(m.section, void.section)), None)
-                self.findings.append(FilledHole(void.hole, holder, filler))
+            if material.covers(void.section):
+                near = (m for m in others if m.section.may_meet(void.section))
+                filler = next((m.structure for m in near if m.section.covers(void.section)), None)
+                self.findings.append(_filled_hole(void.hole, holder, filler))
             else:
                 kept.append(void)
         return kept
@@ -397,12 +355,65 @@ def _around(material: Section, holes: Sequence[Section], taken: Section) -> Iter
     if len(holes) < _FEW_HOLES or material.num_vert() < _FEW_VERTICES:
         yield from (material for _ in holes)
         return
-    parts = intersection(material, taken).decompose()
+    parts = (material & taken).decompose()
     beside: list[list[Section]] = [[] for _ in holes]
-    for i, j in near_pairs([s.bounds() for s in (*parts, *holes)], 0.0):
+    for i, j in near_pairs([s.box for s in (*parts, *holes)], 0.0):
         if i < len(parts) <= j:
             beside[j - len(parts)].append(parts[i])
     yield from map(union, beside)
+
+
+def idle_hole(hole: SolvedStructure, holder: SolvedStructure | None) -> Diagnostic:
+    """Returns the warning on a hole that removes nothing from the structure that holds it."""
+    if holder is None:
+        return Diagnostic(
+            "W0703",
+            f"hole `{hole.path}` cuts nothing: no structure holds it",
+            hole.span,
+            "the root of the program is a hole",
+            hints=(f"write it inside the solid it shall cut: `solid … {{ hole {hole.name} {{ … }} }}`",),
+        )
+    below = hole.path.removeprefix(f"{holder.path}.")
+    hints = [
+        f"place it inside: `constrain inside({below}, …)` in `{holder.path}`, or move it to "
+        "the structure that it shall cut: a hole cuts the structure that holds it, with all its children"
+    ]
+    if hole.box and holder.box:
+        hints.insert(0, f"the hole spans {_spans(hole)}, `{holder.name}` spans {_spans(holder)}")
+    return Diagnostic(
+        "W0703",
+        f"hole `{hole.path}` removes nothing from {holder.kind} `{holder.path}`",
+        hole.span,
+        "no material here",
+        (Label(holder.span, "holds the hole"),) if holder.span else (),
+        tuple(hints),
+    )
+
+
+def _spans(structure: SolvedStructure) -> str:
+    box = structure.box
+    assert box is not None
+    return f"{at((box.left, box.bottom))} to {at((box.right, box.top))}"
+
+
+def _filled_hole(
+    hole: SolvedStructure, holder: SolvedStructure, filler: SolvedStructure | None
+) -> Diagnostic:
+    """Returns the warning on a hole whose void is material again in the structure above."""
+    by = f"`{filler.path}`" if filler else "other material"
+    hints = [f"to cut all of `{holder.path}`, move the hole up into it, beside the parts that it shall cut"]
+    if filler is not None and holder.kind == "solid":
+        hints.append(
+            f"to keep `{filler.name}` a part of its own in the hole, make `{holder.name}` an `assembly`"
+        )
+    return Diagnostic(
+        "W0704",
+        f"hole `{hole.path}` is filled again by {by} in {holder.kind} `{holder.path}`",
+        hole.span,
+        "nothing of this hole remains",
+        (Label(filler.span, "fills it"),) if filler and filler.span else (),
+        tuple(hints),
+    )
 
 
 # --- The edges of united structures and geometries that run inside their body: fine lines in pictures,
@@ -415,7 +426,7 @@ def visible_seams(
     """Yields the edges of each united structure inside the body, by its path, each drawn once."""
     outline = traced[mass.structure.path].edges
     candidates = sorted({edge for path in mass.inner for edge in traced[path].edges} - outline)
-    mask = inside_mask(mass.section, network.midpoints(candidates))
+    mask = mass.section.mask(network.midpoints(candidates))
     left = {edge for edge, within in zip(candidates, mask, strict=True) if within}
     for path in mass.inner:
         edges = sorted(traced[path].edges & left)
@@ -444,7 +455,7 @@ def inner_seams(
         for section, outline in zip(reversed(own), reversed(outlines), strict=True):
             candidates = sorted(outline.edges - taken)
             spots = network.midpoints(candidates)
-            seen = inside_mask(mass.section, spots) & ~inside_mask(over, spots)
+            seen = mass.section.mask(spots) & ~over.mask(spots)
             found.update(edge for edge, is_seen in zip(candidates, seen, strict=True) if is_seen)
             taken.update(candidates)
             over = union([over, section])
@@ -461,7 +472,7 @@ def _merged(network: Network, edges: list[int]) -> Iterator[Piece]:
         if following and following.curve == edge.curve and following.t0 == edge.t1:
             continue
         curve, nodes = network.curves[edge.curve], network.nodes
-        yield part(curve, start.t0, edge.t1, nodes[start.start], nodes[edge.end])
+        yield curve.part(start.t0, edge.t1, nodes[start.start], nodes[edge.end])
         start = None
 
 
@@ -570,12 +581,12 @@ def welded_gaps(
 
 def ends_of(network: Network, geometry: SolvedGeometry, number: int) -> Iterator[End]:
     """Yields both ends of a curve."""
-    for at, is_last in zip(ends(network.curves[number]), (False, True), strict=True):
-        yield End(geometry, number, at, is_last)
+    for spot, is_last in zip(network.curves[number].ends, (False, True), strict=True):
+        yield End(geometry, number, spot, is_last)
 
 
 def _ends_of_open(network: Network, shapes: Iterable[Shape]) -> Iterator[End]:
-    leaves = (leaf for shape in shapes for leaf in shape.leaves if not is_closed(network.curves[leaf[1]]))
+    leaves = (leaf for shape in shapes for leaf in shape.leaves if not network.curves[leaf[1]].is_closed)
     return (end for leaf in leaves for end in ends_of(network, *leaf))
 
 
@@ -592,9 +603,9 @@ def _nearest_first(found: Sequence[End], widest: float) -> Iterator[tuple[End, E
 
 def _with_end(curve: Piece, is_last: bool, kept: End, widest: float) -> Piece | None:
     """Returns such a curve with its end elsewhere; None if that would change more than its end."""
-    if larger_side(bounds(curve)) <= 10 * widest:
+    if larger_side(curve.box) <= 10 * widest:
         return None
-    start, end = ends(curve)
+    start, end = curve.ends
     start, end = (start, kept.at) if is_last else (kept.at, end)
     if isinstance(curve, Line):
         return Line(start, end)
@@ -612,7 +623,7 @@ def _way(p: Vec, q: Vec) -> Vec:
 def _arc_through(arc: Arc, start: Vec, end: Vec, widest: float) -> Arc | None:
     """Returns the arc between two points whose centre is nearest to that of another, and not far from it."""
     if start == end:
-        return replace(arc, start=start, end=end, sweep=math.copysign(TAU, arc.sweep))
+        return replace(arc, start=start, end=end, sweep=math.copysign(math.tau, arc.sweep))
     (x, y), (cx, cy), (dx, dy) = start, arc.center, _way(start, end)
     chord = math.hypot(dx, dy)
     off = ((cx - (x + end[0]) / 2) * dx + (cy - (y + end[1]) / 2) * dy) / chord
@@ -621,5 +632,5 @@ def _arc_through(arc: Arc, start: Vec, end: Vec, widest: float) -> Arc | None:
     if math.dist(center, arc.center) > 2 * widest or abs(radius - arc.radius) > 2 * widest:
         return None
     first, last = (math.atan2(p[1] - center[1], p[0] - center[0]) for p in (start, end))
-    sweep = arc.sweep + math.remainder(last - first - arc.sweep, TAU)
-    return Arc(center, radius, start, end, sweep) if 0 < abs(sweep) < TAU else None
+    sweep = arc.sweep + math.remainder(last - first - arc.sweep, math.tau)
+    return Arc(center, radius, start, end, sweep) if 0 < abs(sweep) < math.tau else None

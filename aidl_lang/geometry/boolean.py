@@ -13,47 +13,11 @@ import numpy as np
 
 from aidl_lang.common.records import record
 from aidl_lang.common.running import Later, checkpoint
-from aidl_lang.geometry.curves import (
-    Arc,
-    Bezier,
-    Bounds,
-    Circle,
-    Floats,
-    Line,
-    Piece,
-    Vec,
-    all_bounds,
-    bounds,
-    derivative,
-    ends,
-    is_closed,
-    larger_side,
-    locate,
-    nearest,
-    part,
-    point,
-    points,
-    reverse,
-    second_derivative,
-    union_bounds,
-)
-from aidl_lang.geometry.intersect import Crossing, Table, all_intersections, meet
-from aidl_lang.geometry.nearness import inside, near_pairs, near_rows
-from aidl_lang.geometry.network import CHORD, RELATIVE_TOLERANCE, Hulls, Network, with_finer_chords
-from aidl_lang.geometry.region import Face, Loop, Region, area, loop_area, region_bounds, region_polygons
-from aidl_lang.geometry.sections import (
-    NEGLIGIBLE,
-    Section,
-    closed_loop,
-    difference,
-    faces_of,
-    filled,
-    first_point,
-    intersection,
-    is_nothing,
-    trace,
-    union,
-)
+from aidl_lang.geometry.curves import Arc, Bezier, Circle, Floats, Line, Piece, Vec, larger_side, union_bounds
+from aidl_lang.geometry.intersect import Crossing, Table, all_intersections, inside, meet, near_rows
+from aidl_lang.geometry.network import CHORD, RELATIVE_TOLERANCE, Hulls, Network
+from aidl_lang.geometry.region import Face, Loop, Region
+from aidl_lang.geometry.sections import Section, arranged, closed_loop, faces_of, filled, trace, union
 
 if TYPE_CHECKING:
     from aidl_lang.common.font_files import Curve
@@ -93,7 +57,7 @@ def lie_within(a: Region, b: Region, reach: float) -> bool:
 def nearest_region(ours: Sequence[Region], others: Sequence[Region]) -> tuple[float, int]:
     """Returns the least distance of outlines on either side, and the place of the other one's region."""
     best = math.inf, 0
-    away = _apart(*(np.array([region_bounds(region) for region in side]) for side in (ours, others)))
+    away = _apart(*(np.array([region.box for region in side]) for side in (ours, others)))
     for pair in np.argsort(away, axis=None, kind="stable").tolist():
         i, j = divmod(pair, len(others))
         if away[i, j] >= best[0]:
@@ -122,7 +86,7 @@ def piece_distance(a: Piece, b: Piece) -> Closest:
 
 
 def _to(curve: Piece, p: Vec) -> Closest:
-    q = point(curve, nearest(curve, p))
+    q = curve.point(curve.nearest(p))
     return math.dist(p, q), p, q
 
 
@@ -130,35 +94,35 @@ def _candidates(a: Piece, b: Piece) -> list[Vec]:
     """Returns points of `a` nearest to `b` if any are: its ends, and those where the normals agree."""
     if not isinstance(a, Line | Arc | Circle) or not isinstance(b, Line | Arc | Circle):
         return _sampled_candidates(a, b)
-    spots = [] if is_closed(a) else list(ends(a))
+    spots = [] if a.is_closed else list(a.ends)
     if isinstance(b, Line):
         return spots
     if isinstance(a, Line):
-        return [*spots, point(a, nearest(a, b.center))]
+        return [*spots, a.point(a.nearest(b.center))]
     dx, dy = b.center[0] - a.center[0], b.center[1] - a.center[1]
     d = math.hypot(dx, dy)
     ux, uy = (dx / d, dy / d) if d else (1.0, 0.0)
     for sign in (-1, 1):
         p = a.center[0] + sign * a.radius * ux, a.center[1] + sign * a.radius * uy
-        spots.append(point(a, nearest(a, p)))
+        spots.append(a.point(a.nearest(p)))
     return spots
 
 
 def _sampled_candidates(a: Piece, b: Piece) -> list[Vec]:
     """Returns the ends of a, and the nearest of a sampling, polished."""
-    away = ((points(a, _SAMPLES)[:, None, :] - points(b, _SAMPLES)[None, :, :]) ** 2).sum(axis=2)
+    away = ((a.points(_SAMPLES)[:, None, :] - b.points(_SAMPLES)[None, :, :]) ** 2).sum(axis=2)
     i, j = divmod(int(np.argmin(away)), len(_SAMPLES))
     t = _facing(a, b, float(_SAMPLES[i]), float(_SAMPLES[j]))
     if t is not None:
-        return [*ends(a), point(a, t)]
-    if {i, j} & {0, len(_SAMPLES) - 1} and not is_closed(a) and not is_closed(b):
-        return list(ends(a))  # an end is nearest, of one or of the other
-    p = point(a, float(_SAMPLES[i]))
+        return [*a.ends, a.point(t)]
+    if {i, j} & {0, len(_SAMPLES) - 1} and not a.is_closed and not b.is_closed:
+        return list(a.ends)  # an end is nearest, of one or of the other
+    p = a.point(float(_SAMPLES[i]))
     for _ in range(50):  # by projecting to and fro
-        before, p = p, point(a, nearest(a, point(b, nearest(b, p))))
+        before, p = p, a.point(a.nearest(b.point(b.nearest(p))))
         if p == before:
             break
-    return [*ends(a), p]
+    return [*a.ends, p]
 
 
 def _facing(a: Piece, b: Piece, t: float, s: float) -> float | None:
@@ -166,9 +130,9 @@ def _facing(a: Piece, b: Piece, t: float, s: float) -> float | None:
     and e·b' = 0 with e = b - a from parameters nearby. None if that leads off the curves, or to no minimum.
     """
     for _ in range(30):
-        (x, y), (u, v) = point(a, t), point(b, s)
-        (ax, ay), (bx, by) = derivative(a, t), derivative(b, s)
-        (cx, cy), (dx, dy) = second_derivative(a, t), second_derivative(b, s)
+        (x, y), (u, v) = a.point(t), b.point(s)
+        (ax, ay), (bx, by) = a.derivative(t), b.derivative(s)
+        (cx, cy), (dx, dy) = a.second_derivative(t), b.second_derivative(s)
         ex, ey = u - x, v - y
         f, g = -(ex * ax + ey * ay), ex * bx + ey * by
         ftt = ax * ax + ay * ay - ex * cx - ey * cy
@@ -196,27 +160,17 @@ def united(*regions: Region) -> Region:
 
 def without(a: Region, *others: Region) -> Region:
     """Returns the region `a` without the others."""
-    return _combined((a, *others), lambda base, *sections: difference(base, union(sections)))
+    return _combined((a, *others), lambda base, *sections: base - union(sections))
 
 
-def common(a: Region, b: Region) -> Region:
-    """Returns the intersection of two regions."""
-    return _combined((a, b), intersection)
-
-
-def within(cover: Region, regions: Sequence[Region]) -> Region:
-    """Returns what of some regions lies in a cover."""
-    return _combined((cover, *regions), lambda base, *sections: intersection(base, union(sections)))
-
-
-def overlap_area(a: Region, b: Region) -> float:
-    """Returns the area of the intersection of two regions, mm²."""
-    return area(common(a, b))
+def common(a: Region, *others: Region) -> Region:
+    """Returns what of other regions lies in the region `a`."""
+    return _combined((a, *others), lambda base, *sections: base & union(sections))
 
 
 def clearance(a: Region, b: Region) -> float:
     """Returns the least distance of two regions, mm; 0 where they meet, infinite if one is empty."""
-    if not _lie_apart(a, b) and overlap_area(a, b) > 0:
+    if not _lie_apart(a, b) and common(a, b).area > 0:
         return 0.0
     closest = region_distance(a, b)
     return closest[0] if closest else float("inf")
@@ -248,15 +202,13 @@ def _may_hold(region: Region, other: Region) -> bool:
 
 
 def _combined(regions: Sequence[Region], operation: Callable[..., Section]) -> Region:
-    network = Network([piece for region in regions for piece in region.pieces])
     firsts = list(accumulate((len(region.pieces) for region in regions), initial=0))
 
-    def traced() -> Region:
+    def area(network: Network) -> Section:
         placed = zip(regions, firsts, strict=False)
-        sections = (filled(network, [loop.pieces for loop in r.loops], first) for r, first in placed)
-        return trace(network, operation(*sections)).region
+        return operation(*(filled(network, [loop.pieces for loop in r.loops], k) for r, k in placed))
 
-    return with_finer_chords(network, traced)
+    return arranged([piece for region in regions for piece in region.pieces], area)
 
 
 # --- Outlines that touch each other in a point, with a joint there: boundary representations want a vertex
@@ -272,7 +224,7 @@ def jointed(face: Face) -> Face:
         number = numbers.stop
         pieces = [network.piece(use) for k in numbers for use in network.uses[k]]
         if loop.reversed and len(pieces) > 1:
-            loops.append(Loop(tuple(reverse(piece) for piece in reversed(pieces))))
+            loops.append(Loop(tuple(piece.reversed() for piece in reversed(pieces))))
         else:
             loops.append(Loop(tuple(pieces), loop.reversed))
     return Face(loops[0], tuple(loops[1:]))
@@ -309,12 +261,12 @@ def clipped_each(curves: Sequence[Piece], region: Region, *, with_border: bool =
     """Returns for each curve what of it lies inside, or along the border where that counts as inside."""
     if not curves or not region:
         return [Clipped((), (curve,), is_whole=False) for curve in curves]
-    boxes = np.concatenate((np.array([bounds(c) for c in curves]), region.boxes))
+    boxes = np.concatenate((np.array([c.box for c in curves]), region.boxes))
     size = float((boxes[:, 2:].max(axis=0) - boxes[:, :2].min(axis=0)).max()) or 1.0
     tolerance = RELATIVE_TOLERANCE * size
     stretches = stretches_beside(curves, region.pieces, boxes, tolerance)
-    spots = [point(c, s.middle) for c, of in zip(curves, stretches, strict=True) for s in of]
-    polygons = region_polygons(region, CHORD * size)
+    spots = [c.point(s.middle) for c, of in zip(curves, stretches, strict=True) for s in of]
+    polygons = region.polygons(CHORD * size)
     within = iter(inside(polygons, np.array(spots).reshape(-1, 2)).tolist())
     return [
         _clipped(c, of, [next(within) for _ in of], with_border)
@@ -323,7 +275,7 @@ def clipped_each(curves: Sequence[Piece], region: Region, *, with_border: bool =
 
 
 def stretches_beside(
-    curves: Sequence[Piece], borders: Sequence[Piece], boxes: Floats | Sequence[Bounds], tolerance: float
+    curves: Sequence[Piece], borders: Sequence[Piece], boxes: Floats, tolerance: float
 ) -> list[list[Stretch]]:
     """Returns the parts of each curve between some borders; `boxes`: of the curves, then the borders."""
     every, count = [*curves, *borders], len(curves)
@@ -344,25 +296,25 @@ def _stretches(
     """Returns a curve in parts between the places where it meets the border."""
     checkpoint()
     cuts = [(t, p) for t, _, p in crossings]
-    spots = (p for border in borders for p in ends(border))
-    cuts += [(t, p) for p in spots if (t := locate(curve, p, tolerance)) is not None]
-    start, end = ends(curve)
+    spots = (p for border in borders for p in border.ends)
+    cuts += [(t, p) for p in spots if (t := curve.locate(p, tolerance)) is not None]
+    start, end = curve.ends
     cuts.sort(key=lambda cut: cut[0])
-    if cuts and is_closed(curve):
+    if cuts and curve.is_closed:
         cuts.append((cuts[0][0] + 1, cuts[0][1]))
     else:
         cuts = [(0.0, start), *cuts, (1.0, end)]
     apart = cuts[:1]
     for t, p in cuts[1:]:
         t0, before = apart[-1]
-        if max(math.dist(before, point(curve, (t0 + t) / 2)), math.dist(before, p)) > tolerance:
+        if max(math.dist(before, curve.point((t0 + t) / 2)), math.dist(before, p)) > tolerance:
             apart.append((t, p))
         elif t == cuts[-1][0] and len(apart) > 1:
             apart[-1] = (t, p)
     found = []
     for (t0, p), (t1, q) in pairwise(apart):
-        middle = point(curve, (t0 + t1) / 2)
-        on_border = any(locate(border, middle, 2 * tolerance) is not None for border in borders)
+        middle = curve.point((t0 + t1) / 2)
+        on_border = any(border.locate(middle, 2 * tolerance) is not None for border in borders)
         found.append(Stretch(t0, t1, p, q, on_border))
     return found
 
@@ -377,13 +329,13 @@ def _clipped(
             before = same.pop()
             stretch = Stretch(before.t0, stretch.t1, before.start, stretch.end, on_border=False)
         same.append(stretch)
-    for same in sides if is_closed(curve) else ():
+    for same in sides if curve.is_closed else ():
         if len(same) > 1 and same[-1].t1 == same[0].t0 + 1:
             last, first = same.pop(), same[0]
             same[0] = Stretch(last.t0, first.t1 + 1, last.start, first.end, on_border=False)
     is_whole = all(s.on_border or is_in for s, is_in in zip(stretches, within, strict=True))
     inner, outer = (
-        tuple(curve if s.t1 - s.t0 == 1 else part(curve, s.t0, s.t1, s.start, s.end) for s in same)
+        tuple(curve if s.t1 - s.t0 == 1 else curve.part(s.t0, s.t1, s.start, s.end) for s in same)
         for same in sides
     )
     return Clipped(inner, outer, is_whole)
@@ -400,8 +352,6 @@ ALL_PAIRS = 24
 NEAR = 0.05
 UNNOTICED = 1e-3
 """A gap in mm that nobody who makes the parts will see: flanks of gears are a little less than touching."""
-_THIN = 100 * NEGLIGIBLE
-"""Width of an area below which it may be but the difference of curves and chords, so that it is traced."""
 
 Relation = Literal["touching", "apart", "overlapping"]
 
@@ -426,7 +376,6 @@ class Solid:
     path: str
     region: Region
     section: Section = field(repr=False, compare=False)
-    box: Bounds
     place: float
     color: str | None
     is_clear: bool
@@ -453,7 +402,7 @@ def contacts(network: Network, solids: Sequence[Solid]) -> Contacts:
 
     def near() -> tuple[tuple[str, str], ...]:
         reach = max(UNNOTICED, network.tolerance)
-        pairs = sorted(near_pairs([solid.box for solid in solids], reach + network.tolerance))
+        pairs = sorted(near_rows([s.region.box for s in solids], reach + network.tolerance).tolist())
         couples = ((solids[i], solids[j]) for i, j in pairs)
         return tuple(
             (a.path, b.path)
@@ -464,7 +413,7 @@ def contacts(network: Network, solids: Sequence[Solid]) -> Contacts:
     def everything() -> tuple[Contact, ...]:
         pairs: Iterable[tuple[int, int]] = combinations(range(len(solids)), 2)
         if len(solids) > ALL_PAIRS:
-            pairs = sorted(near_pairs([solid.box for solid in solids], NEAR * network.size))
+            pairs = sorted(near_rows([s.region.box for s in solids], NEAR * network.size).tolist())
         return tuple(_compare(network, solids[i], solids[j]) for i, j in pairs)
 
     return Contacts(tuple((s.path, s.region) for s in solids), Later(near), Later(everything))
@@ -472,12 +421,10 @@ def contacts(network: Network, solids: Sequence[Solid]) -> Contacts:
 
 def _shared(network: Network, a: Solid, b: Solid, *, exactly: bool) -> float:
     """Returns the area that two bodies share; that of their polygons will do if it is no thin one."""
-    common = intersection(a.section, b.section)
-    if is_nothing(common):
+    common = a.section & b.section
+    if common.is_nothing:
         return 0.0
-    left, bottom, right, top = common.bounds()
-    thin = _THIN * common.num_contour() * ((right - left) + (top - bottom))
-    return common.area() if common.area() > thin and not exactly else area(trace(network, common).region)
+    return trace(network, common).region.area if exactly or common.is_thin else common.area
 
 
 def _compare(network: Network, a: Solid, b: Solid) -> Contact:
@@ -496,7 +443,7 @@ def lettered_region(letters: Sequence[Sequence[Piece]]) -> Region | None:
     """Returns the region of letters whose contours follow one another, do not cross, and turn one way and the
     other where they are nested: nothing need be arranged for it. None if one is open, or two may meet.
     """
-    boxes = [union_bounds(all_bounds(letter)) for letter in letters]
+    boxes = [union_bounds([piece.box for piece in letter]) for letter in letters]
     tolerance = RELATIVE_TOLERANCE * larger_side(union_bounds(boxes))
     if len(near_rows(boxes, tolerance)):
         return None
@@ -504,25 +451,22 @@ def lettered_region(letters: Sequence[Sequence[Piece]]) -> Region | None:
     for letter in letters:
         checkpoint()
         contours = list(_contours(letter))
-        if any(ends(contour[0])[0] != ends(contour[-1])[1] for contour in contours):
+        if any(contour[0].ends[0] != contour[-1].ends[1] for contour in contours):
             return None
-        areas = [loop_area(Loop(contour)) for contour in contours]
+        areas = [Loop(contour).area for contour in contours]
         sense = math.copysign(1.0, max(areas, key=abs))
-        turned = [c if sense > 0 else tuple(reverse(piece) for piece in reversed(c)) for c in contours]
+        turned = [c if sense > 0 else tuple(piece.reversed() for piece in reversed(c)) for c in contours]
         loops = (closed_loop(contour, tolerance) for contour in turned)
         faces += faces_of([(sense * area, loop) for area, loop in zip(areas, loops, strict=True)])
-    return Region(tuple(sorted(faces, key=lambda face: first_point(face.outer))))
+    return Region(tuple(sorted(faces, key=lambda face: face.outer.start)))
 
 
 @lru_cache(maxsize=512)
 def united_character(outline: tuple[Curve, ...]) -> tuple[Curve, ...]:
     """Returns the outline of what the contours of a character enclose together, by the non-zero rule."""
-    network = Network([Line(*c) if len(c) == 2 else Bezier(*c) for c in outline])
-
-    def traced() -> Region:
-        return trace(network, filled(network, _contours(network.curves), 0, "NonZero")).region
-
-    return tuple(_points(piece) for piece in with_finer_chords(network, traced).pieces)
+    curves = [Line(*c) if len(c) == 2 else Bezier(*c) for c in outline]
+    region = arranged(curves, lambda network: filled(network, _contours(curves), 0, "NonZero"))
+    return tuple(map(_points, region.pieces))
 
 
 _ROUNDS = 4
@@ -541,18 +485,18 @@ def stencilled(outline: tuple[Curve, ...], width: float) -> tuple[Curve, ...]:
             break
         beyond = width * 2**wider
         region = without(region, *(bar for hole in counters for bar in _bridges(region, hole, width, beyond)))
-    return tuple(_points(piece) for piece in region.pieces)
+    return tuple(map(_points, region.pieces))
 
 
 def _bridges(region: Region, counter: Loop, width: float, beyond: float) -> Iterator[Region]:
     """Yields the areas of a letter to be taken away for a counter. They reach `beyond` the far side of a
     stroke, which may be slanted, but no further than half of the way to the next one.
     """
-    left, low, right, high = region_bounds(Region((Face(counter),)))
+    left, low, right, high = counter.box
     x, middle = (left + right) / 2, (low + high) / 2
-    _, bottom, _, top = region_bounds(region)
+    _, bottom, _, top = region.box
     line = _rectangle(x - 1e-3 * width, bottom - width, x + 1e-3 * width, top + width)
-    strokes = sorted(region_bounds(Region((face,)))[1::2] for face in common(region, line).faces)
+    strokes = sorted(face.outer.box[1::2] for face in common(region, line).faces)
     above = [stroke for stroke in strokes if stroke[0] > middle]
     below = [stroke for stroke in reversed(strokes) if stroke[1] < middle]
     if above:
@@ -579,7 +523,7 @@ def _contours(outline: Sequence[Piece]) -> Iterator[tuple[Piece, ...]]:
     """Yields the runs of curves of which each begins where the one before it ends."""
     first = 0
     for k, piece in enumerate(outline):
-        is_closed = ends(outline[first])[0] == ends(piece)[1]
-        if is_closed or k + 1 == len(outline) or ends(outline[k + 1])[0] != ends(piece)[1]:
+        is_closed = outline[first].ends[0] == piece.ends[1]
+        if is_closed or k + 1 == len(outline) or outline[k + 1].ends[0] != piece.ends[1]:
             yield tuple(outline[first : k + 1])
             first = k + 1

@@ -11,26 +11,8 @@ import numpy as np
 
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
-from aidl_lang.geometry.curves import (
-    TAU,
-    Arc,
-    Circle,
-    Ellipse,
-    Floats,
-    Ints,
-    Line,
-    Mask,
-    Piece,
-    Vec,
-    derivative,
-    ends,
-    is_closed,
-    point,
-    points,
-    reverse,
-    round_range,
-)
-from aidl_lang.geometry.nearness import windows
+from aidl_lang.geometry.curves import Arc, Circle, Ellipse, Floats, Ints, Line, Mask, Piece, Vec
+from aidl_lang.geometry.intersect import windows
 from aidl_lang.geometry.region import Loop, Region
 
 # --- The outline of a region as straight and round elements in arrays, to be searched for chords (`walls`).
@@ -130,7 +112,7 @@ class Skeleton:
             self.after.append(first + (k + 1) % count)
         for number in range(first, first + count):
             yield from self._of_piece(number, -1.0 if loop.reversed else 1.0)
-            if not is_closed(self.pieces[number]):
+            if not self.pieces[number].is_closed:
                 yield self._corner(number, self.after[number])
 
     def _of_piece(self, number: int, side: float) -> Iterator[Bit]:
@@ -138,7 +120,7 @@ class Skeleton:
         if isinstance(piece, Line):
             yield Bit(number, 0.0, 1.0, piece.start, piece.end)
         elif isinstance(piece, Arc | Circle):
-            first, sweep = round_range(piece)
+            first, sweep = piece.range
             side = math.copysign(1.0, sweep) if isinstance(piece, Arc) else side
             middle, half = first + sweep / 2, abs(sweep) / 2
             yield Bit(number, 0.0, 1.0, piece.center, (0.0, 0.0), True, piece.radius, middle, half, side)
@@ -149,13 +131,13 @@ class Skeleton:
         """Returns the corner where a piece ends. Its parameter 2 says that it is fixed there."""
         one, other = self.pieces[number], self.pieces[after]
         arriving, leaving = direction(one, 1.0), direction(other, 0.0)
-        turn = math.remainder(leaving - arriving, TAU)
+        turn = math.remainder(leaving - arriving, math.tau)
         if abs(turn) > math.pi - _CUSP:
             # A cusp: which side it is on shows a little away from it.
-            (x, y), (x0, y0), (x1, y1) = ends(one)[1], point(one, 1 - 1e-3), point(other, 1e-3)
+            (x, y), (x0, y0), (x1, y1) = one.ends[1], one.point(1 - 1e-3), other.point(1e-3)
             nearby = math.atan2(y1 - y, x1 - x) - math.atan2(y - y0, x - x0)
-            turn = math.copysign(turn, math.remainder(nearby, TAU))
-        return _bend(number, 2.0, ends(one)[1], arriving, turn)
+            turn = math.copysign(turn, math.remainder(nearby, math.tau))
+        return _bend(number, 2.0, one.ends[1], arriving, turn)
 
 
 def _bend(piece: int, t: float, at: Vec, arriving: float, turn: float) -> Bit:
@@ -169,44 +151,40 @@ def _chopped(number: int, piece: Piece) -> Iterator[Bit]:
     """Yields chords of a curve and the corners between them, also those of chord and tangent at its ends."""
     count = _CHORDS[type(piece).__name__]
     ts = np.linspace(0.0, 1.0, count + 1)
-    spots: list[Vec] = [(float(x), float(y)) for x, y in points(piece, ts)]
+    spots: list[Vec] = [(float(x), float(y)) for x, y in piece.points(ts)]
     angles = [math.atan2(q[1] - p[1], q[0] - p[0]) for p, q in pairwise(spots)]
     for k in range(count):
         yield Bit(number, float(ts[k]), float(ts[k + 1]), spots[k], spots[k + 1])
-    around = [angles[-1] if is_closed(piece) else direction(piece, 0.0), *angles]
-    if not is_closed(piece):
+    around = [angles[-1] if piece.is_closed else direction(piece, 0.0), *angles]
+    if not piece.is_closed:
         angles = [*angles, direction(piece, 1.0)]
     for k, (arriving, leaving) in enumerate(zip(around, angles, strict=False)):
-        yield _bend(number, float(ts[k]), spots[k], arriving, math.remainder(leaving - arriving, TAU))
+        yield _bend(number, float(ts[k]), spots[k], arriving, math.remainder(leaving - arriving, math.tau))
 
 
 def _turned(piece: Piece) -> Piece:
     """Returns a whole curve run through clockwise: an ellipse mirrored in its long axis is itself."""
-    return replace(piece, ry=-piece.ry) if isinstance(piece, Ellipse) else reverse(piece)
+    return replace(piece, ry=-piece.ry) if isinstance(piece, Ellipse) else piece.reversed()
 
 
 def _error(piece: Piece) -> float:
     """Returns a bound on how far chords of a chopped curve are from it: twice that in their middles."""
     if isinstance(piece, Line | Arc | Circle):
         return 0.0
-    spots = points(piece, np.linspace(0.0, 1.0, 2 * _CHORDS[type(piece).__name__] + 1))
+    spots = piece.points(np.linspace(0.0, 1.0, 2 * _CHORDS[type(piece).__name__] + 1))
     middles = (spots[:-2:2] + spots[2::2]) / 2 - spots[1::2]
     return 2 * float(np.hypot(middles[:, 0], middles[:, 1]).max())
 
 
 def direction(piece: Piece, t: float) -> float:
-    """Returns the direction of travel at an end, radians; of a doubled control point, by a small step."""
-    dx, dy = derivative(piece, t)
-    start, end = ends(piece)
-    if math.hypot(dx, dy) <= 1e-9 * max(math.dist(start, end), 1e-300):
-        a, b = (point(piece, at) for at in ((0.0, 1e-4) if t == 0 else (1 - 1e-4, 1.0)))
-        dx, dy = b[0] - a[0], b[1] - a[1]
+    """Returns the direction of travel, radians."""
+    dx, dy = piece.direction(t)
     return math.atan2(dy, dx)
 
 
 def within(angle: Floats | float, middle: Floats, half: Floats, slack: float) -> Mask:
     """Tells whether directions lie in ranges, up to some radians."""
-    away = np.abs((angle - middle + math.pi) % TAU - math.pi)
+    away = np.abs((angle - middle + math.pi) % math.tau - math.pi)
     return away <= half + slack
 
 

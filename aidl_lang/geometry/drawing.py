@@ -13,12 +13,12 @@ from aidl_lang.common.colors import css_color
 from aidl_lang.common.diagnostics import Diagnostic, by_statement, ordered
 from aidl_lang.common.records import record
 from aidl_lang.common.running import Later
+from aidl_lang.geometry import legibility
 from aidl_lang.geometry.bodies import (
     Bodies,
     Clips,
     CoveredHoles,
     Gap,
-    IdleHole,
     InnerLoop,
     LooseCurves,
     Mass,
@@ -26,6 +26,7 @@ from aidl_lang.geometry.bodies import (
     clip_shapes,
     effective,
     empty_clips,
+    idle_hole,
     inner_seams,
     open_gaps,
     visible_seams,
@@ -33,51 +34,13 @@ from aidl_lang.geometry.bodies import (
     without_gaps,
 )
 from aidl_lang.geometry.boolean import Contact, Contacts, Solid, contacts, lettered_region
-from aidl_lang.geometry.curves import (
-    Bounds,
-    Piece,
-    all_bounds,
-    bounds,
-    has_extent,
-    is_finite,
-    larger_side,
-    union_bounds,
-    usable,
-)
+from aidl_lang.geometry.curves import Bounds, Piece, has_extent, larger_side, union_bounds, usable
 from aidl_lang.geometry.faces import ENGRAVED, Shape, own_faces, region_of, union_of
-from aidl_lang.geometry.legibility import (
-    COVERED,
-    Ground,
-    colliding_notes,
-    covered_note,
-    crossing_notes,
-    lettering_note,
-    overhanging_notes,
-    unseen_note,
-)
 from aidl_lang.geometry.network import GRID, Network, with_finer_chords
-from aidl_lang.geometry.notes import (
-    detached_notes,
-    finding_notes,
-    gap_note,
-    stroked_note,
-    unusable_note,
-    upright_note,
-)
-from aidl_lang.geometry.pieces import LETTERING, piece_notes
-from aidl_lang.geometry.region import Face, Measures, Region, measure, region_bounds, region_polygons
-from aidl_lang.geometry.sections import (
-    Section,
-    Traced,
-    boxes_meet,
-    difference,
-    fill,
-    intersection,
-    is_nothing,
-    trace,
-    trace_all,
-    union,
-)
+from aidl_lang.geometry.notes import finding_notes, gap_note, stroked_note, unusable_note, upright_note
+from aidl_lang.geometry.pieces import LETTERING, detached_notes, piece_notes
+from aidl_lang.geometry.region import Face, Measures, Region, measure
+from aidl_lang.geometry.sections import Section, Traced, fill, trace, trace_all, union
 from aidl_lang.geometry.solved import Frame, SolvedGeometry, SolvedModel, SolvedStructure
 from aidl_lang.geometry.styles import (
     Style,
@@ -107,7 +70,10 @@ class Body:
     path: str
     region: Region
     style: Style
-    box: Bounds
+
+    @property
+    def box(self) -> Bounds:
+        return self.region.box
 
 
 @record()
@@ -219,7 +185,7 @@ def draw(model: SolvedModel) -> tuple[Drawing, Findings]:
     root, unusable = model.root, list[Diagnostic]()
     (curves, boxes), ink, shapes, engraved = _collect(root, unusable)
     clips, around = clip_shapes(root, len(curves))
-    boxes += map(bounds, around)
+    boxes += (piece.box for piece in around)
     network = Network([*curves, *around], boxes, union_bounds([*boxes, *ink[1]]))
     styles = styles_of(root)
     blind = [path for path, style in styles.items() if style.is_blind]
@@ -233,13 +199,10 @@ def draw(model: SolvedModel) -> tuple[Drawing, Findings]:
         root, network, shapes, partial(_arranged, root, made, clips, blind)
     )
     regions = {path: outline.region for path, outline in traced.items()}
-    bodies = tuple(
-        Body(path, regions[path], of_bodies[path], region_bounds(regions[path]))
-        for path in (m.structure.path for m in masses)
-    )
+    bodies = tuple(Body(path, regions[path], of_bodies[path]) for path in (m.structure.path for m in masses))
     order = places_of(root)
     solids = [
-        Solid(b.path, b.region, m.section, b.box, order[b.path], b.style.color, b.style.is_clear)
+        Solid(b.path, b.region, m.section, order[b.path], b.style.color, b.style.is_clear)
         for b, m in zip(bodies, masses, strict=True)
     ]
     touching = contacts(network, solids)
@@ -259,14 +222,14 @@ def draw(model: SolvedModel) -> tuple[Drawing, Findings]:
     )
     areas = dict(_areas(root, shapes, aside, walk, masses, ink[0], styles, order))
     lying = [*solids, *(area.seen for area in areas.values())]
-    ground = Ground(network, sorted(lying, key=lambda body: body.place), *ink, order)
+    ground = legibility.Ground(network, sorted(lying, key=lambda body: body.place), *ink, order)
     strokes = tuple(_strokes(root, shapes, engraved, walk, areas, styles, regions, ground))
     drawn = {s.path for s in strokes} | {path for path, region in regions.items() if region}
     empty = list(empty_clips(root, drawn))
 
     def everything() -> list[Diagnostic]:
         paths = [b.path for b in bodies]
-        notes = [*unusable, *map(gap_note, gaps), *crossing_notes(network, root, shapes)]
+        notes = [*unusable, *map(gap_note, gaps), *legibility.crossing_notes(network, root, shapes)]
         notes += [
             upright_note(s)
             for s in root.walk()
@@ -279,8 +242,8 @@ def draw(model: SolvedModel) -> tuple[Drawing, Findings]:
         notes += piece_notes(root, walk, masses, solids, touching.near())
         notes += _unseen(root, shapes, styles, ground)
         notes += _covered_letters(root, walk, masses, ground)
-        notes += overhanging_notes(root, bodies, strokes)
-        notes += colliding_notes(root, strokes, network.tolerance)
+        notes += legibility.overhanging_notes(root, bodies, strokes)
+        notes += legibility.colliding_notes(root, strokes, network.tolerance)
         if any(body.style.material for body in bodies):
             from aidl_lang.geometry.walls import thin_wall_notes
 
@@ -292,7 +255,7 @@ def draw(model: SolvedModel) -> tuple[Drawing, Findings]:
 
     plans = tuple(PlanBox(s.path, s.name, s.box.bounds) for s in root.walk() if s.is_empty and s.box)
     boxes = [b.box for b in bodies]
-    boxes += all_bounds(piece for s in strokes for piece in s.pieces)
+    boxes += (piece.box for s in strokes for piece in s.pieces)
     drawing = Drawing(bodies, regions, seams, strokes, plans, touching, styles, union_bounds(boxes))
     return drawing, Findings([d for d in (*unusable, *empty) if d.is_error], Later(everything))
 
@@ -304,11 +267,11 @@ def _closed(
     arranged: Callable[[Network], _Arranged],
 ) -> tuple[Network, Bodies, list[Mass], dict[str, Traced], list[Gap]]:
     """Returns the network with small gaps between curves closed, what they enclose, and these gaps."""
-    found = with_finer_chords(network, partial(arranged, network))
+    found = with_finer_chords(network, arranged)
     gaps = open_gaps(network, found[0].findings, shapes)
     while gaps:
         joined = Network(without_gaps(network.curves, gaps), box=network.box)
-        then = with_finer_chords(joined, partial(arranged, joined))
+        then = with_finer_chords(joined, arranged)
         kept = effective(gaps, then[0].findings)
         if len(kept) == len(gaps):
             network, found = joined, then
@@ -349,10 +312,9 @@ def _collect(root: SolvedStructure, notes: list[Diagnostic]) -> tuple[_Curves, _
             leaves = []
             vanished = []
             on_part = {id(leaf) for part in geometry.walk() if part.type == ENGRAVED for leaf in part.parts}
-            found = [(leaf, usable(leaf.curve) if leaf.curve else None) for leaf in geometry.leaves()]
-            around = iter(all_bounds(curve for _, curve in found if curve is not None))
-            for leaf, curve in found:
-                if curve is None or not has_extent(box := next(around)):
+            for leaf in geometry.leaves():
+                curve = usable(leaf.curve) if leaf.curve else None
+                if curve is None or not has_extent(box := curve.box):
                     vanished.append(leaf)
                     continue
                 curves, boxes = ink if structure.kind == "drawing" or id(leaf) in on_part else solid
@@ -369,7 +331,7 @@ def _collect(root: SolvedStructure, notes: list[Diagnostic]) -> tuple[_Curves, _
             if leaves:
                 # A shape may have edges of no length (a rounded rectangle with half-round ends).
                 own.append(Shape(geometry, tuple(leaves)))
-                vanished = [leaf for leaf in vanished if leaf.curve and not is_finite(leaf.curve)]
+                vanished = [leaf for leaf in vanished if leaf.curve and not leaf.curve.is_finite()]
             notes += [unusable_note(structure, leaf, leaf if leaves else geometry) for leaf in vanished[:1]]
     return solid, ink, shapes, engraved
 
@@ -384,12 +346,12 @@ def _root_masses(walk: Bodies, root: SolvedStructure) -> list[Mass]:
         return walk.masses(root)
     cut = walk.cut(root)
     if cut.holes:
-        walk.findings.append(IdleHole(root, None))
+        walk.findings.append(idle_hole(root, None))
     return list(cut.islands)
 
 
 def _covered_letters(
-    root: SolvedStructure, walk: Bodies, masses: list[Mass], ground: Ground
+    root: SolvedStructure, walk: Bodies, masses: list[Mass], ground: legibility.Ground
 ) -> Iterator[Diagnostic]:
     """Warnings about letters of solids and holes that later bodies lie over."""
     # The masses of an assembly follow its own.
@@ -398,8 +360,8 @@ def _covered_letters(
         for face in walk.faces.get(structure.path, ()) if structure.path in place else ():
             if all(g.type == LETTERING for g in face.geometries):
                 share, by = ground.hidden_part(face.section, place[structure.path])
-                if share >= COVERED:
-                    yield lettering_note(structure, face.geometries[0], share, by)
+                if share >= legibility.COVERED:
+                    yield legibility.lettering_note(structure, face.geometries[0], share, by)
 
 
 def _strokes(
@@ -410,7 +372,7 @@ def _strokes(
     areas: _Areas,
     styles: dict[str, Style],
     regions: dict[str, Region],
-    ground: Ground,
+    ground: legibility.Ground,
 ) -> Iterator[Stroke]:
     """Yields the curves of drawings, and those of other structures that bound nothing."""
     loose = {f.structure.path: f.curves for f in walk.findings if isinstance(f, LooseCurves)}
@@ -440,7 +402,7 @@ def _inked(
     drawing: SolvedStructure,
     shapes: list[Shape],
     style: Style,
-    ground: Ground,
+    ground: legibility.Ground,
     areas: _Areas,
     *,
     is_own: bool,
@@ -474,11 +436,11 @@ def _is_seen(
         return True
     place = max(order[g.path] for g in own)
     below = (area.whole for path, area in areas.items() if order[path] <= place)
-    return any(boxes_meet(a, b := found.face.section) and not is_nothing(intersection(a, b)) for a in below)
+    return any(area.overlaps(found.face.section) for area in below)
 
 
 def _unseen(
-    root: SolvedStructure, shapes: _Shapes, styles: dict[str, Style], ground: Ground
+    root: SolvedStructure, shapes: _Shapes, styles: dict[str, Style], ground: legibility.Ground
 ) -> Iterator[Diagnostic]:
     """Yields warnings on strokes in the colour below, and under a body unless one of their array shows."""
     own = _colored_drawings(root)
@@ -495,15 +457,15 @@ def _unseen(
                 seen.add(shape.geometry.name.partition("[")[0])
             if by is None and shape.geometry.type == LETTERING:
                 share, over_it = ground.covered_part(numbers, place)
-                if share >= COVERED:
-                    yield lettering_note(drawing, shape.geometry, share, over_it)
+                if share >= legibility.COVERED:
+                    yield legibility.lettering_note(drawing, shape.geometry, share, over_it)
             is_asked = drawing.path in own or "color" in shape.geometry.attributes
             if is_asked and look.color and ground.hides(look.color, numbers, place, wholly=True):
                 lost.setdefault(look.color, []).append(shape.geometry.name)
-        yield from (unseen_note(drawing, names, color) for color, names in lost.items())
+        yield from (legibility.unseen_note(drawing, names, color) for color, names in lost.items())
         for by, names in covered.items():
             if whole := [name for name in names if name.partition("[")[0] not in seen]:
-                yield covered_note(drawing, whole, by)
+                yield legibility.covered_note(drawing, whole, by)
 
 
 def _areas(
@@ -536,24 +498,24 @@ def _areas(
                 found = list(_told_apart([shape], ink, is_area=True))
                 region = Region(next((faces for _, faces in found if faces), ()))
                 loose = next((lines for lines, faces in found if not faces), ())
-                polygons = map(np.array, region_polygons(region, network.tolerance))
+                polygons = map(np.array, region.polygons(network.tolerance))
                 whole = section = fill([network.to_grid(p) * np.float64(GRID) for p in polygons], "EvenOdd")
             else:
                 whole = union_of(own_faces(network, [shape]).faces)
                 if g.path in aside:
-                    whole = difference(whole, union([v.section for v in mass.voids] if mass else []))
+                    whole = whole - union([v.section for v in mass.voids] if mass else [])
                 else:
-                    whole = intersection(whole, mass.section if mass else union([]))
-                section = whole = intersection(whole, clip) if clip is not None else whole
+                    whole = whole & (mass.section if mass else union([]))
+                section = whole = whole & clip if clip is not None else whole
                 body = mass.structure.path if mass else ""
                 if later := [s for s in plain.get(body, ()) if order[s.geometry.path] > place]:
                     if (key := (body, len(later))) not in above:
                         above[key] = union_of(own_faces(network, later).faces)
-                    section = difference(section, above[key])  # in the colour of the body again
+                    section = section - above[key]  # in the colour of the body again
                 region = trace(network, section).region
             if region:
-                look, box = styled(styles[structure.path], g), region_bounds(region)
-                seen = Solid(g.path, region, section, box, place, look.color, look.is_clear)
+                look = styled(styles[structure.path], g)
+                seen = Solid(g.path, region, section, place, look.color, look.is_clear)
                 yield g.path, _Area(seen, whole, loose)
 
 

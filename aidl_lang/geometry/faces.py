@@ -11,30 +11,10 @@ from typing import TYPE_CHECKING, TypeAlias
 from aidl_lang.building.model import Geometry
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
-from aidl_lang.geometry.curves import (
-    Arc,
-    Bezier,
-    Circle,
-    Ellipse,
-    EllipseArc,
-    Floats,
-    Line,
-    Piece,
-    Vec,
-    image,
-)
+from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, EllipseArc, Line, Piece, Vec, image
 from aidl_lang.geometry.network import Joined, Network, Use, with_finer_chords
-from aidl_lang.geometry.region import Region, polygon_area
-from aidl_lang.geometry.sections import (
-    Section,
-    difference,
-    fill,
-    inside_mask,
-    intersection,
-    is_nothing,
-    trace,
-    union,
-)
+from aidl_lang.geometry.region import Polygon, Region, polygon_area
+from aidl_lang.geometry.sections import Section, fill, trace, union
 from aidl_lang.geometry.solved import Scalar, SolvedGeometry, described
 
 if TYPE_CHECKING:
@@ -137,11 +117,10 @@ def is_winding(shape: SolvedGeometry) -> bool:
 # --- What they enclose -----------------------------------------------------------------------------
 
 
-def enclosed(
+def _enclosed(
     network: Network,
     shapes: Iterable[tuple[SolvedGeometry, Sequence[int]]],
     closed: set[Use],
-    alternating: Callable[[Network, list[Use]], Section],
 ) -> tuple[Section, list[Crossing]]:
     """Returns the area of shapes of a file, each given with the numbers of its curves, and those that cross
     themselves; `closed` are the edges that lead to no open end.
@@ -157,7 +136,7 @@ def enclosed(
         if is_winding(shape):
             sections.append(fill([network.polyline(loop) for loop in _walks(network, uses)], "NonZero"))
         else:
-            sections.append(alternating(network, uses))
+            sections.append(_alternating(network, uses))
         nodes.append(set(_ends(network, uses)))
         if places := _crossings(network, uses):
             crossed.append((shape, tuple(network.nodes[node] for node in places)))
@@ -182,7 +161,7 @@ def _walks(network: Network, uses: Sequence[Use]) -> Iterator[list[Use]]:
     """Yields the runs of edges of which each begins where the one before it ends, as the file has them."""
     walk: list[Use] = []
     for use in uses:
-        if walk and first_node(network, use) != last_node(network, walk[-1]):
+        if walk and network.first(use) != network.last(walk[-1]):
             yield walk
             walk = []
         walk.append(use)
@@ -206,14 +185,12 @@ def _crossing(sections: Sequence[Section], nodes: Sequence[set[int]]) -> list[li
 def _cross(a: Section, b: Section) -> bool:
     """Tells whether two areas have something in common, and each something that the other has not."""
     checkpoint()
-    if is_nothing(intersection(a, b)):
+    if not a.overlaps(b):
         return False
-    return not is_nothing(difference(a, b)) and not is_nothing(difference(b, a))
+    return not (a - b).is_nothing and not (b - a).is_nothing
 
 
-# --- The faces that a structure draws itself.
-#
-# A closed geometry (a circle, a compound shape) is filled by itself, its nested loops alternating. Free-
+# --- A closed geometry (a circle, a compound shape) is filled by itself, its nested loops alternating. Free-
 # standing curves are chained across names: what lies inside their outlines is filled, dangling ends are
 # trimmed. Free curves that close only together with the outline of a closed geometry (an arc on top of a
 # rectangle) add what they enclose outside of it.
@@ -256,12 +233,12 @@ def own_faces(network: Network, shapes: Sequence[Shape]) -> OwnFaces:
     for shape in shapes:
         uses = [use for number in shape.numbers for use in network.uses[number]]
         is_curve = not shape.geometry.parts and len(shape.leaves) == 1
-        is_open = is_curve and uses and first_node(network, uses[0]) != last_node(network, uses[-1])
+        is_open = is_curve and uses and network.first(uses[0]) != network.last(uses[-1])
         kept = [] if is_open else _without_dangling(network, uses)
         if kept:
             section, crossed = _area(network, shape, kept)
             result.crossed += crossed
-            if is_nothing(section):  # flat, or twice the same outline
+            if section.is_nothing:  # flat, or twice the same outline
                 result.loose += shape.leaves
             else:
                 result.faces.append(OwnFace((shape.geometry,), section))
@@ -282,7 +259,7 @@ def _area(network: Network, shape: Shape, uses: list[Use]) -> tuple[Section, lis
     for leaf, number in shape.leaves:
         numbers[leaf.path.rpartition(".")[0]].append(number)
     contours = ((part, numbers[path]) for path, part in files.items())
-    return enclosed(network, contours, set(uses), _alternating)
+    return _enclosed(network, contours, set(uses))
 
 
 def _by_letter(network: Network, shape: Shape, uses: list[Use]) -> Iterator[list[Use]]:
@@ -301,17 +278,6 @@ def _by_letter(network: Network, shape: Shape, uses: list[Use]) -> Iterator[list
 
 def _touches(network: Network, curve: int, edges: set[int]) -> bool:
     return any(edge in edges for edge, _ in network.uses[curve])
-
-
-def first_node(network: Network, use: Use) -> int:
-    """Returns the node at which the use of an edge begins."""
-    edge = network.edges[use[0]]
-    return edge.start if use[1] else edge.end
-
-
-def last_node(network: Network, use: Use) -> int:
-    """Returns the node at which the use of an edge ends."""
-    return first_node(network, (use[0], not use[1]))
 
 
 def _without_dangling(network: Network, uses: Iterable[Use]) -> list[Use]:
@@ -350,8 +316,8 @@ def _loops(network: Network, uses: list[Use]) -> list[list[Use]]:
     """Returns closed walks that use every edge once; every node has an even degree."""
     ways: dict[int, list[Use]] = defaultdict(list)
     for edge, forward in reversed(uses):
-        ways[first_node(network, (edge, forward))].append((edge, forward))
-        ways[last_node(network, (edge, forward))].append((edge, not forward))
+        ways[network.first((edge, forward))].append((edge, forward))
+        ways[network.last((edge, forward))].append((edge, not forward))
     left = Counter(edge for edge, _ in uses)
     loops = []
     for use in uses:
@@ -364,14 +330,14 @@ def _walk(network: Network, first: Use, ways: dict[int, list[Use]], left: dict[i
     """Returns the loop of edges from the first onwards until its start comes round again."""
     loop = [first]
     left[first[0]] -= 1
-    while (node := last_node(network, loop[-1])) != first_node(network, first):
+    while (node := network.last(loop[-1])) != network.first(first):
         following = next(use for use in ways[node] if left[use[0]])
         left[following[0]] -= 1
         loop.append(following)
     return loop
 
 
-def _outlines(network: Network, uses: Iterable[Use]) -> tuple[list[Floats], set[int]]:
+def _outlines(network: Network, uses: Iterable[Use]) -> tuple[list[Polygon], set[int]]:
     """Returns the outer outline of each connected part of a planar graph, and the edges that bound some face
     of it.
 
@@ -380,7 +346,7 @@ def _outlines(network: Network, uses: Iterable[Use]) -> tuple[list[Floats], set[
     edges = list(dict.fromkeys(edge for edge, _ in uses))
     turn = _next_clockwise(network, edges)
     cycle_of: dict[Use, int] = {}
-    polygons: list[Floats] = []
+    polygons: list[Polygon] = []
     for start in ((edge, forward) for edge in edges for forward in (True, False)):
         if start in cycle_of:
             continue
@@ -400,7 +366,7 @@ def _next_clockwise(network: Network, edges: list[int]) -> dict[Use, Use]:
     for edge in edges:
         for forward in (True, False):
             use = (edge, forward)
-            leaving[first_node(network, use)].append((_direction(network, use), use))
+            leaving[network.first(use)].append((_direction(network, use), use))
     turn: dict[Use, Use] = {}
     for ways in leaving.values():
         around = [use for _, use in sorted(ways)]
@@ -411,8 +377,8 @@ def _next_clockwise(network: Network, edges: list[int]) -> dict[Use, Use]:
 
 def _direction(network: Network, use: Use) -> float:
     inner = network.inner(use)
-    target = inner[0] if len(inner) else network.node_grid[last_node(network, use)]
-    dx, dy = target - network.node_grid[first_node(network, use)]
+    target = inner[0] if len(inner) else network.node_grid[network.last(use)]
+    dx, dy = target - network.node_grid[network.first(use)]
     return math.atan2(dy, dx)
 
 
@@ -425,11 +391,11 @@ def _chain_free(
     used: set[int] = set()
     joined = Joined()
     for use in kept:
-        joined.join(first_node(network, use), last_node(network, use))
-    for part in joined.groups(kept, lambda use: first_node(network, use)):
+        joined.join(network.first(use), network.last(use))
+    for part in joined.groups(kept, lambda use: network.first(use)):
         polygons, bounding = _outlines(network, part)
         section = fill(polygons, "NonZero")
-        if not is_nothing(section):
+        if not section.is_nothing:
             names = tuple(g for g, number in free if _touches(network, number, bounding))
             result.faces.append(OwnFace(names, section))
             used |= bounding
@@ -446,12 +412,12 @@ def _close_with_outlines(
     uses = [use for _, number in rest for use in network.uses[number]]
     together, bounding = _outlines(network, _without_dangling(network, [*uses, *outlines]))
     hull, _ = _outlines(network, outlines)
-    added = difference(fill(together, "NonZero"), fill(hull, "NonZero"))
-    if is_nothing(added):
+    added = fill(together, "NonZero") - fill(hull, "NonZero")
+    if added.is_nothing:
         return set()
     boundary = trace(network, added).edges
     edges = [e for e in dict.fromkeys(e for e, _ in uses) if e in bounding]
-    within = inside_mask(added, network.midpoints(edges))
+    within = added.mask(network.midpoints(edges))
     used = {e for e, is_inside in zip(edges, within, strict=True) if is_inside or e in boundary}
     names = tuple(g for g, number in rest if _touches(network, number, used))
     if names:
@@ -470,13 +436,12 @@ def region_of(
         curves += [curve for _, curve in leaves]
     if not curves:
         return Region(), []
-    network = Network(curves)
 
-    def traced() -> tuple[Region, list[SolvedGeometry]]:
+    def traced(network: Network) -> tuple[Region, list[SolvedGeometry]]:
         found = own_faces(network, shapes)
         return trace(network, union_of(found.faces)).region, [leaf for leaf, _ in found.loose]
 
-    return with_finer_chords(network, traced)
+    return with_finer_chords(Network(curves), traced)
 
 
 def union_of(faces: Iterable[OwnFace]) -> Section:

@@ -9,26 +9,12 @@ Newton's method, following the radius up from 0.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import field, replace
-from functools import partial
 
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
-from aidl_lang.geometry.curves import (
-    Arc,
-    Circle,
-    Line,
-    Piece,
-    Vec,
-    derivative,
-    ends,
-    is_closed,
-    part,
-    point,
-    reverse,
-    turn_between,
-)
+from aidl_lang.geometry.curves import Arc, Circle, Line, Piece, Vec, turn_between
 from aidl_lang.geometry.intersect import circle_circle, line_circle
 from aidl_lang.geometry.region import length
 
@@ -50,7 +36,7 @@ class Arm:
     @property
     def way(self) -> Vec:
         """The direction in which it leaves the corner, of length 1."""
-        return direction(self.curve, 0.0)
+        return self.curve.direction(0.0)
 
 
 @record(slots=True)
@@ -111,27 +97,17 @@ class Result:
     failures: list[TooLarge] = field(default_factory=list)
 
 
-def direction(curve: Piece, t: float) -> Vec:
-    """Returns the unit tangent; at a stalled end of a Bézier curve that of the curve beside it."""
-    dx, dy = derivative(curve, t)
-    size = math.hypot(dx, dy)
-    if size == 0:
-        dx, dy = derivative(curve, t + 1e-6 if t < 0.5 else t - 1e-6)
-        size = math.hypot(dx, dy) or 1.0
-    return dx / size, dy / size
-
-
 def arms_at(curves: Sequence[Piece], p: Vec, tolerance: float) -> list[Arm]:
     """Returns the arms of all curves that end at a point, first those that arrive there."""
     found = []
     for number, curve in enumerate(curves):
-        if is_closed(curve):
+        if curve.is_closed:
             continue
-        start, end = ends(curve)
+        start, end = curve.ends
         if math.dist(start, p) <= tolerance:
             found.append(Arm(curve, number, first=True))
         if math.dist(end, p) <= tolerance:
-            found.append(Arm(reverse(curve), number, first=False))
+            found.append(Arm(curve.reversed(), number, first=False))
     return sorted(found, key=lambda arm: arm.first)
 
 
@@ -139,7 +115,7 @@ def corners_of(curves: Sequence[Piece], tolerance: float) -> list[Corner]:
     """Returns all points where exactly two curves end, at an angle."""
     found: list[Corner] = []
     seen: list[Vec] = []
-    for p in (p for c in curves if not is_closed(c) for p in ends(c)):
+    for p in (p for c in curves if not c.is_closed for p in c.ends):
         if any(math.dist(p, q) <= tolerance for q in seen):
             continue
         seen.append(p)
@@ -164,7 +140,7 @@ def finish(curves: Sequence[Piece], works: Sequence[Work]) -> Result:
     # By curve and end: the finish there, the share it takes, and the point where it touches.
     lost: dict[tuple[int, bool], tuple[Work, float, Vec]] = {}
     for made in done:
-        for arm, cut, at in zip(made.work.corner.arms, made.cuts, ends(made.piece), strict=True):
+        for arm, cut, at in zip(made.work.corner.arms, made.cuts, made.piece.ends, strict=True):
             lost[arm.number, arm.first] = made.work, cut, at
     numbers = sorted({number for number, _ in lost})
     for number in numbers:
@@ -174,11 +150,11 @@ def finish(curves: Sequence[Piece], works: Sequence[Work]) -> Result:
     if not result.failures:
         result.finished = done
         for number in numbers:
-            start, end = ends(curve := curves[number])
+            start, end = (curve := curves[number]).ends
             _, t0, start = lost.get((number, True), (None, 0.0, start))
             _, rest, end = lost.get((number, False), (None, 0.0, end))
             t1 = 1 - rest
-            result.curves[number] = part(curve, t0, t1, start, end) if t1 - t0 > _EXACT else None
+            result.curves[number] = curve.part(t0, t1, start, end) if t1 - t0 > _EXACT else None
     return result
 
 
@@ -207,12 +183,12 @@ def solve(work: Work) -> Finished | None:
         u, v = (_along(curve, size) for curve, size in zip((a, b), work.sizes, strict=True))
         if u is None or v is None:
             return None
-        return Finished(work, (u, v), Line(point(a, u), point(b, v)))
+        return Finished(work, (u, v), Line(a.point(u), b.point(v)))
     touch = None if corner.is_cusp else _round(corner, work.sizes[0])
     if touch is None:
         return None
     u, v, center = touch
-    return Finished(work, (u, v), _arc(corner, work.sizes[0], center, point(a, u), point(b, v)))
+    return Finished(work, (u, v), _arc(corner, work.sizes[0], center, a.point(u), b.point(v)))
 
 
 def _arc(corner: Corner, radius: float, center: Vec, p: Vec, q: Vec) -> Arc:
@@ -229,8 +205,8 @@ def _along(curve: Piece, distance: float) -> float | None:
         return None
     if isinstance(curve, Line | Arc):
         return min(1.0, distance / whole)
-    start = ends(curve)[0]
-    return largest(lambda t: length(part(curve, 0.0, t, start, point(curve, t))) < distance, 1.0)
+    start = curve.ends[0]
+    return largest(lambda t: length(curve.part(0.0, t, start, curve.point(t))) < distance, 1.0)
 
 
 def _round(corner: Corner, radius: float) -> tuple[float, float, Vec] | None:
@@ -256,7 +232,7 @@ def _round(corner: Corner, radius: float) -> tuple[float, float, Vec] | None:
 def _moved(curve: Line | Arc, left: float) -> Line | Circle | None:
     """Returns the endless line or whole circle of all points at a distance to the left of a curve."""
     if isinstance(curve, Line):
-        dx, dy = direction(curve, 0.0)
+        dx, dy = curve.direction(0.0)
         (x0, y0), (x1, y1) = curve.start, curve.end
         return Line((x0 - left * dy, y0 + left * dx), (x1 - left * dy, y1 + left * dx))
     radius = curve.radius - math.copysign(left, left * curve.sweep)
@@ -269,7 +245,7 @@ def _meet(a: Line | Circle, b: Line | Circle) -> list[Vec]:
         return line_circle(b, a, slack) if isinstance(b, Line) else circle_circle(a, b, slack)
     if isinstance(b, Circle):
         return line_circle(a, b, _EXACT * b.radius)
-    (ax, ay), (bx, by) = direction(a, 0.0), direction(b, 0.0)
+    (ax, ay), (bx, by) = a.direction(0.0), b.direction(0.0)
     x, y = b.start[0] - a.start[0], b.start[1] - a.start[1]
     t = (x * by - y * bx) / (ax * by - ay * bx)
     return [(a.start[0] + t * ax, a.start[1] + t * ay)]
@@ -278,7 +254,7 @@ def _meet(a: Line | Circle, b: Line | Circle) -> list[Vec]:
 def _foot(curve: Line | Arc, p: Vec) -> float | None:
     """Returns the parameter of the point of an arm nearest to p; None before its start."""
     if isinstance(curve, Line):
-        dx, dy = derivative(curve, 0.0)
+        dx, dy = curve.derivative(0.0)
         t = ((p[0] - curve.start[0]) * dx + (p[1] - curve.start[1]) * dy) / (dx * dx + dy * dy)
         return t if t >= 0 else None
     turn = math.atan2(p[1] - curve.center[1], p[0] - curve.center[0]) - curve.start_angle
@@ -289,7 +265,7 @@ def _round_by_newton(a: Piece, b: Piece, side: float, radius: float) -> tuple[fl
     """Follows the touching points from the corner as the radius grows; None once one leaves its arm."""
 
     def gap(u: float, v: float, r: float) -> Vec:
-        p, q = parallel(a, u, side * r), parallel(b, v, -side * r)
+        p, q = a.parallel(u, side * r), b.parallel(v, -side * r)
         return p[0] - q[0], p[1] - q[1]
 
     u = v = 0.0
@@ -309,13 +285,7 @@ def _round_by_newton(a: Piece, b: Piece, side: float, radius: float) -> tuple[fl
                 break
         if not (math.hypot(*gap(u, v, r)) < _EXACT * max(1.0, radius) and min(u, v) >= 0 and max(u, v) <= 1):
             return None
-    return u, v, parallel(a, u, side * radius)
-
-
-def parallel(curve: Piece, t: float, left: float) -> Vec:
-    """Returns the point at a distance to the left of that at a parameter."""
-    (x, y), (dx, dy) = point(curve, t), direction(curve, t)
-    return x - left * dy, y + left * dx
+    return u, v, a.parallel(u, side * radius)
 
 
 # --- Fillets and chamfers as large as fits: the sizes that `max` stands for.
@@ -332,38 +302,27 @@ def fitted(curves: Sequence[Piece], works: Sequence[Work], runs: Sequence[int], 
     one already. Runs grow together, and each until one of its corners has no more room.
     """
     sizes: dict[int, float] = {}
+
+    def sized_by(sizes: Mapping[int, float]) -> list[Work]:
+        pairs = zip(works, runs, strict=True)
+        return [replace(work, sizes=(sizes[run], sizes[run])) if run else work for work, run in pairs]
+
+    def fit(tried: Mapping[int, float], asked: Collection[int]) -> bool:
+        """Tells whether nothing of the runs that are asked for fails or runs into another."""
+        checkpoint()
+        pairs = zip(sized_by({**sizes, **tried}), runs, strict=True)
+        sized = [(work, run) for work, run in pairs if work.sizes[0] > 0]
+        own = {id(work) for work, run in sized if run in asked}
+        failures = finish(curves, [work for work, _ in sized]).failures
+        return not any(id(f.work) in own or id(f.other) in own for f in failures)
+
     while growing := sorted({run for run in runs if run and run not in sizes}):
-        trial = partial(_fit, curves, works, runs, sizes)
-        size = _largest(lambda size: trial(dict.fromkeys(growing, size), growing), extent)  # noqa: B023
+        size = _largest(lambda size: fit(dict.fromkeys(growing, size), growing), extent)
         level = dict.fromkeys(growing, size)
         larger = max(size * (1 + _MORE), 2 * _NOTHING * extent)
-        stuck = [run for run in growing if not trial(level | {run: larger}, [run])]
+        stuck = [run for run in growing if not fit(level | {run: larger}, [run])]
         sizes |= dict.fromkeys(stuck or growing, size)
-    return _sized(works, runs, sizes)
-
-
-def _sized(works: Sequence[Work], runs: Sequence[int], sizes: Mapping[int, float]) -> list[Work]:
-    return [
-        replace(work, sizes=(sizes[run], sizes[run])) if run else work
-        for work, run in zip(works, runs, strict=True)
-    ]
-
-
-def _fit(
-    curves: Sequence[Piece],
-    works: Sequence[Work],
-    runs: Sequence[int],
-    known: Mapping[int, float],
-    tried: Mapping[int, float],
-    asked: Sequence[int],
-) -> bool:
-    """Tells whether nothing of the runs that are asked for fails or runs into another."""
-    checkpoint()
-    changed = zip(_sized(works, runs, {**known, **tried}), runs, strict=True)
-    sized = [(work, run) for work, run in changed if work.sizes[0] > 0]
-    own = {id(work) for work, run in sized if run in asked}
-    failures = finish(curves, [work for work, _ in sized]).failures
-    return not any(id(f.work) in own or id(f.other) in own for f in failures)
+    return sized_by(sizes)
 
 
 def _largest(fits: Callable[[float], bool], extent: float) -> float:

@@ -1,4 +1,4 @@
-"""The points where curves meet, of many pairs at once."""
+"""What is near, and where curves meet: of many pairs at once."""
 
 from __future__ import annotations
 
@@ -10,23 +10,136 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from aidl_lang.common.running import checkpoint
-from aidl_lang.geometry.curves import (
-    Arc,
-    Bezier,
-    Circle,
-    Floats,
-    Ints,
-    Line,
-    Mask,
-    Piece,
-    Vec,
-    ends,
-    is_closed,
-    locate,
-    point,
-    round_range,
-)
+from aidl_lang.common.running import checkpoint, give_up
+from aidl_lang.geometry.curves import Arc, Bezier, Bounds, Circle, Floats, Ints, Line, Mask, Piece, Vec
+from aidl_lang.solver.linear import each_once
+
+# --- What is near: pairs of boxes, and sides of polylines beside a point, in windows of sorted tables.
+
+_CANDIDATES = 1 << 20
+"""Number of candidates looked at in one step, which bounds the memory."""
+
+_MOST_PAIRS = 2_000_000
+"""Pairs of boxes that meet, beyond which no drawing is worked out in time."""
+
+
+def near_pairs(boxes: Sequence[Bounds], margin: float) -> Iterator[tuple[int, int]]:
+    """Yields pairs i < j whose boxes come closer than the margin, in a sweep from left to right."""
+    yield from ((i, j) for i, j in near_rows(boxes, margin).tolist())
+
+
+def near_rows(boxes: Sequence[Bounds] | Floats, margin: float) -> Ints:
+    """Returns the pairs of `near_pairs` as a table of two columns."""
+    if len(boxes) < 2:
+        return np.zeros((0, 2), dtype=np.intp)
+    b = np.array(boxes, dtype=np.float64)
+    order = np.argsort(b[:, 0], kind="stable")
+    b = b[order]
+    sweeps = [_sweep(b, axis, margin) for axis in (0, 1)]
+    along, stops = min(sweeps, key=lambda sweep: int((sweep[1] - np.arange(len(b))).sum()))
+    found, total = [], 0
+    for one, other in windows(np.arange(1, len(b) + 1), stops):
+        first, second = np.minimum(along[one], along[other]), np.maximum(along[one], along[other])
+        meets = (b[first, 2:] + margin >= b[second, :2]).all(axis=1) & (b[first, 1] - margin <= b[second, 3])
+        found.append((first[meets], second[meets]))
+        total += int(np.count_nonzero(meets))
+        if total > _MOST_PAIRS:
+            give_up()
+        checkpoint()
+    firsts, seconds = (np.concatenate([pair[k] for pair in found]) for k in (0, 1))
+    kept = np.lexsort((firsts, seconds))
+    one, other = order[firsts[kept]], order[seconds[kept]]
+    return np.stack((np.minimum(one, other), np.maximum(one, other)), axis=1)
+
+
+def _sweep(b: Floats, axis: int, margin: float) -> tuple[Ints, Ints]:
+    """Returns boxes in order of their beginnings on an axis, and for each place up to which they meet."""
+    along = np.argsort(b[:, axis], kind="stable")
+    return along, np.searchsorted(b[along, axis], b[along, 2 + axis] + margin, side="right")
+
+
+def windows(low: Ints, high: Ints, at_once: int = _CANDIDATES) -> Iterator[tuple[Ints, Ints]]:
+    """Yields every number k with every place in `low[k]:high[k]`, a part of them at a time."""
+    sizes = np.maximum(0, high - low)
+    ends = np.cumsum(sizes)
+    begin = 0
+    while begin < len(sizes):
+        done = int(ends[begin - 1]) if begin else 0
+        stop = max(begin + 1, int(np.searchsorted(ends, done + at_once, side="right")))
+        size = sizes[begin:stop]
+        number = np.repeat(np.arange(begin, stop), size)
+        within = np.arange(len(number)) - np.repeat(np.cumsum(size) - size, size)
+        yield number, low[number] + within
+        begin = stop
+
+
+class Sides:
+    """Straight sides (x0, y0, x1, y1 in a row), found by place: by left ends, in classes of width."""
+
+    def __init__(self, sides: Floats) -> None:
+        self._start, self._way = sides[:, :2], sides[:, 2:] - sides[:, :2]
+        left, width = np.minimum(sides[:, 0], sides[:, 2]), np.abs(self._way[:, 0])
+        size = np.frexp(np.maximum(width, 1e-9))[1]
+        self._classes: list[tuple[Ints, Floats, float]] = []
+        for k in each_once(size):
+            of_size = np.flatnonzero(size == k)
+            of_size = of_size[np.argsort(left[of_size], kind="stable")]
+            self._classes.append((of_size, left[of_size], float(2.0**k)))
+
+    def beside(self, x: Floats, reach: float) -> Iterator[tuple[Ints, Ints]]:
+        """Places on the first axis, each with every side that may come within reach of it there, in parts."""
+        for of_size, left, width in self._classes:
+            low = np.searchsorted(left, x - width - reach)
+            high = np.searchsorted(left, x + reach, side="right")
+            for place, window in windows(low, high):
+                yield place, of_size[window]
+
+    def near(self, spots: Floats, reach: float) -> tuple[Ints, Ints, Floats]:
+        """Returns all sides that pass a spot at most at the given distance: spot, side and distance."""
+        found = [(np.zeros(0, dtype=np.intp), np.zeros(0, dtype=np.intp), np.zeros(0))]
+        for spot, side in self.beside(spots[:, 0], reach):
+            away = from_sides(spots[spot] - self._start[side], self._way[side])
+            kept = away <= reach
+            found.append((spot[kept], side[kept], away[kept]))
+        spot, side, away = (np.concatenate([f[k] for f in found]) for k in range(3))
+        return spot, side, away
+
+    def nearest(self, spots: Floats, reach: float) -> Ints:
+        """Returns the side nearest to each spot, the first of several; sought within a reach that grows."""
+        result = np.full(len(spots), -1, dtype=np.intp)
+        while len(left := np.flatnonzero(result < 0)):
+            spot, side, away = self.near(spots[left], reach)
+            order = np.lexsort((side, away, spot))
+            first = np.unique(spot[order], return_index=True)
+            result[left[first[0]]] = side[order][first[1]]
+            reach *= 1000
+        return result
+
+
+def from_sides(gap: Floats, way: Floats) -> Floats:
+    """Returns the distances of spots from sides, by the ways from the starts to spots and ends of these."""
+    square = np.maximum((way**2).sum(axis=-1), 1e-300)
+    t = np.clip((gap * way).sum(axis=-1) / square, 0, 1)
+    away: Floats = np.hypot(*np.moveaxis(gap - t[..., None] * way, -1, 0))
+    return away
+
+
+def inside(polygons: Sequence[Floats], spots: Floats) -> Mask:
+    """Returns the mask of points inside an odd number of polygons, by the crossings of rays to the right."""
+    crossings = np.zeros(len(spots), dtype=np.intp)
+    if polygons and len(spots):
+        start = np.concatenate(polygons)
+        end = np.concatenate([np.concatenate((p[1:], p[:1])) for p in polygons])
+        # A ray along x meets the sides whose span in y has it: they are found by that axis.
+        across = Sides(np.concatenate((start[:, ::-1], end[:, ::-1]), axis=1))
+        for spot, side in across.beside(spots[:, 1], 0.0):
+            (ax, ay), (bx, by), (px, py) = start[side].T, end[side].T, spots[spot].T
+            straddle = (ay > py) != (by > py)
+            x = ax + (py - ay) / np.where(straddle, by - ay, 1.0) * (bx - ax)
+            crossings += np.bincount(spot[straddle & (x > px)], minlength=len(spots))
+    odd: Mask = crossings % 2 == 1
+    return odd
+
 
 # --- Many curves as a table of numbers, for points on all of them at once.
 
@@ -40,7 +153,7 @@ class Table:
     def __init__(self, curves: Sequence[Piece]) -> None:
         self.curves = curves
         self.is_round = np.array([not isinstance(curve, Line | Bezier) for curve in curves], dtype=np.bool_)
-        self.is_closed = np.array([is_closed(curve) for curve in curves], dtype=np.bool_)
+        self.is_closed = np.array([curve.is_closed for curve in curves], dtype=np.bool_)
         self.rows = np.array([_row(curve) for curve in curves]).reshape(-1, 8)
         cubic = ~self.is_round
         self.rows[cubic] = (_POWERS @ self.rows[cubic].reshape(-1, 4, 2)).reshape(-1, 8)
@@ -91,10 +204,8 @@ def _row(curve: Piece) -> tuple[float, ...]:
         return x, y, x + (u - x) / 3, y + (v - y) / 3, u - (u - x) / 3, v - (v - y) / 3, u, v
     if isinstance(curve, Bezier):
         return *curve.p0, *curve.p1, *curve.p2, *curve.p3
-    if isinstance(curve, Arc | Circle):
-        return *curve.center, curve.radius, curve.radius, 1.0, 0.0, *round_range(curve)
-    turn = math.cos(curve.angle), math.sin(curve.angle)
-    return *curve.center, curve.rx, curve.ry, *turn, *round_range(curve)
+    center, rx, ry, angle, first, sweep = curve.frame
+    return *center, rx, ry, math.cos(angle), math.sin(angle), first, sweep
 
 
 # --- Where curves meet the endless lines or the whole circles that carry others: their distance from these
@@ -234,7 +345,7 @@ def all_intersections(table: Table, pairs: Ints, tolerance: float) -> list[list[
             found[k] = crossings if is_plain[k, 0] else [(t, s, p) for s, t, p in crossings]
     for part in _parts(np.flatnonzero(~is_plain.any(axis=1)), _SAMPLED_AT_ONCE):
         for row, t, s in _sampled(table, pairs[part], tolerance):
-            found[part[row]].append((t, s, point(curves[pairs[part[row], 0]], t)))
+            found[part[row]].append((t, s, curves[pairs[part[row], 0]].point(t)))
     return [_apart(crossings, tolerance) if len(crossings) > 1 else crossings for crossings in found]
 
 
@@ -246,17 +357,17 @@ def _parts(numbers: Ints, at_once: int) -> Iterator[Ints]:
 
 def _carried(a: Piece, b: Piece, at: Sequence[float], tolerance: float) -> list[Crossing]:
     """Returns the crossings among the places at which b meets what carries a."""
-    spots = [(s, point(b, s)) for s in at]
-    found = [(t, s, p) for s, p in spots if (t := locate(a, p, tolerance)) is not None]
-    may_lie = len(found) + sum(_on(a, p, tolerance) for p in ends(b)) > 1
+    spots = [(s, b.point(s)) for s in at]
+    found = [(t, s, p) for s, p in spots if (t := a.locate(p, tolerance)) is not None]
+    may_lie = len(found) + sum(_on(a, p, tolerance) for p in b.ends) > 1
     return [] if may_lie and _lie_on_each_other(a, b, tolerance) else found
 
 
 def meet(a: Piece, b: Piece, tolerance: float) -> bool:
     """Tells whether two curves have a point in common: a crossing, a touch, an end of one on the other."""
     return (
-        any(locate(a, p, tolerance) is not None for p in ends(b))
-        or any(locate(b, p, tolerance) is not None for p in ends(a))
+        any(a.locate(p, tolerance) is not None for p in b.ends)
+        or any(b.locate(p, tolerance) is not None for p in a.ends)
         or bool(intersections(a, b, tolerance))
     )
 
@@ -270,14 +381,12 @@ def _plain(a: Piece, b: Piece, tolerance: float) -> list[Crossing]:
     assert isinstance(a, Line | Arc | Circle)
     assert isinstance(b, Arc | Circle)
     spots = line_circle(a, b, tolerance) if isinstance(a, Line) else circle_circle(a, b, tolerance)
-    places = ((locate(a, p, tolerance), locate(b, p, tolerance), p) for p in spots)
+    places = ((a.locate(p, tolerance), b.locate(p, tolerance), p) for p in spots)
     return [(t, s, p) for t, s, p in places if t is not None and s is not None]
 
 
 def _line_line(a: Line, b: Line, tolerance: float) -> list[Crossing]:
-    (x0, y0), (x1, y1) = a.start, a.end
-    (u0, v0), (u1, v1) = b.start, b.end
-    ax, ay, bx, by = x1 - x0, y1 - y0, u1 - u0, v1 - v0
+    (x0, y0), (u0, v0), (ax, ay), (bx, by) = a.start, b.start, a.way, b.way
     cross = ax * by - ay * bx
     if abs(cross) <= 1e-9 * math.hypot(ax, ay) * math.hypot(bx, by):
         return []
@@ -287,12 +396,12 @@ def _line_line(a: Line, b: Line, tolerance: float) -> list[Crossing]:
     if not (-slack_a <= t <= 1 + slack_a and -slack_b <= s <= 1 + slack_b):
         return []
     t, s = min(1.0, max(0.0, t)), min(1.0, max(0.0, s))
-    return [(t, s, point(a, t))]
+    return [(t, s, a.point(t))]
 
 
 def line_circle(line: Line, circle: Arc | Circle, tolerance: float) -> list[Vec]:
     (x, y), r = circle.center, circle.radius
-    dx, dy = line.end[0] - line.start[0], line.end[1] - line.start[1]
+    dx, dy = line.way
     length = math.hypot(dx, dy)
     if not length:
         return []
@@ -345,8 +454,8 @@ def _sampled(table: Table, pairs: Ints, tolerance: float) -> Iterator[tuple[int,
             # So close from one to the other that they are one there: the crossing belongs to the touch.
             a, b = (table.curves[number] for number in pairs[row].tolist())
             way = touch - crossing[0]
-            way = math.remainder(way, 1.0) if is_closed(a) else way
-            if _on(b, point(a, crossing[0] + way / 2), tolerance):
+            way = math.remainder(way, 1.0) if a.is_closed else way
+            if _on(b, a.point(crossing[0] + way / 2), tolerance):
                 crossing = [touch, other]
         yield row, crossing[0], crossing[1]
     k, t, s = _nearest_samples(away, step, ~lies)
@@ -365,24 +474,24 @@ def _apart(found: list[Crossing], tolerance: float) -> list[Crossing]:
 
 def _lie_on_each_other(a: Piece, b: Piece, tolerance: float) -> bool:
     """Tells whether the curves share a stretch: between two ends that lie on both, all else does."""
-    if is_closed(a):
+    if a.is_closed:
         a, b = b, a
     marks = [0.0, 1.0]
-    if not is_closed(a):
-        spots = list(ends(a)) if is_closed(b) else [*ends(a), *ends(b)]
+    if not a.is_closed:
+        spots = list(a.ends) if b.is_closed else [*a.ends, *b.ends]
         on_both = [
-            t for p in spots if (t := locate(a, p, tolerance)) is not None and _on(b, point(a, t), tolerance)
+            t for p in spots if (t := a.locate(p, tolerance)) is not None and _on(b, a.point(t), tolerance)
         ]
         marks = sorted(on_both)
     return any(
-        all(_on(b, point(a, t0 + (t1 - t0) * k / 8), tolerance) for k in range(1, 8))
+        all(_on(b, a.point(t0 + (t1 - t0) * k / 8), tolerance) for k in range(1, 8))
         for t0, t1 in pairwise(marks)
-        if math.dist(point(a, t0), point(a, t1)) > tolerance or t1 - t0 > 0.5
+        if math.dist(a.point(t0), a.point(t1)) > tolerance or t1 - t0 > 0.5
     )
 
 
 def _on(curve: Piece, p: Vec, tolerance: float) -> bool:
-    return locate(curve, p, tolerance) is not None
+    return curve.locate(p, tolerance) is not None
 
 
 def _may_lie(near: Mask, closed: Mask) -> Mask:
@@ -475,9 +584,3 @@ def self_crossing(curve: Bezier) -> tuple[float, float] | None:
         return None
     s, t = (u - math.sqrt(root)) / 2, (u + math.sqrt(root)) / 2
     return (s, t) if s > 1e-9 and t < 1 - 1e-9 else None
-
-
-def sorted_cuts(cuts: list[tuple[float, int]]) -> list[tuple[float, int]]:
-    """Returns cuts in order of their parameter, a node that follows itself kept once."""
-    cuts = sorted(cuts)
-    return cuts[:1] + [b for a, b in pairwise(cuts) if b[1] != a[1]]

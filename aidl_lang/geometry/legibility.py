@@ -19,37 +19,15 @@ from aidl_lang.common.prose import counted, named, rough
 from aidl_lang.common.records import record
 from aidl_lang.common.source import Span
 from aidl_lang.geometry.boolean import Solid, stretches_beside
-from aidl_lang.geometry.curves import (
-    NO_LENGTH,
-    Bounds,
-    Line,
-    Piece,
-    Vec,
-    all_bounds,
-    are_near,
-    derivative,
-    part,
-    point,
-    points,
-    union_bounds,
-)
-from aidl_lang.geometry.faces import Shape, first_node, last_node
-from aidl_lang.geometry.intersect import meet
-from aidl_lang.geometry.nearness import from_sides, inside
+from aidl_lang.geometry.curves import NO_LENGTH, Bounds, Line, Piece, Vec, are_near, union_bounds
+from aidl_lang.geometry.faces import Shape
+from aidl_lang.geometry.intersect import from_sides, inside, meet
 from aidl_lang.geometry.network import GRID, Network, Use
-from aidl_lang.geometry.notes import at, local
+from aidl_lang.geometry.notes import local
 from aidl_lang.geometry.pieces import LETTERING
-from aidl_lang.geometry.region import Region, length, loop_points
-from aidl_lang.geometry.sections import (
-    Section,
-    boxes_meet,
-    covers,
-    inside_mask,
-    intersection,
-    is_nothing,
-    union,
-)
-from aidl_lang.geometry.solved import SolvedGeometry, SolvedStructure
+from aidl_lang.geometry.region import Region, length
+from aidl_lang.geometry.sections import Section, union
+from aidl_lang.geometry.solved import SolvedGeometry, SolvedStructure, at
 
 if TYPE_CHECKING:
     from aidl_lang.geometry.drawing import Body, Stroke
@@ -100,7 +78,7 @@ class Ground:
     def covering(self, curves: Sequence[int], place: float) -> str | None:
         """Returns the path of a body that is drawn over all of some curves; None if there is none."""
         box = union_bounds([self.boxes[curve] for curve in curves])
-        over = [k for k in self._above(curves, place) if _lies_within(box, self.bodies[k].box)]
+        over = [k for k in self._above(curves, place) if _lies_within(box, self.bodies[k].region.box)]
         over = [k for k in over if all(k in self._at_middles[curve] for curve in curves)]
         within = [on for _, on in self._parts(curves, over)]
         return next((self.bodies[k].path for k in over if all(k in on for on in within)), None)
@@ -119,15 +97,15 @@ class Ground:
 
     def _around(self, curves: Sequence[int], bodies: Iterable[int]) -> list[int]:
         box = union_bounds([self.boxes[curve] for curve in curves])
-        return [k for k in bodies if curves and are_near(box, self.bodies[k].box)]
+        return [k for k in bodies if curves and are_near(box, self.bodies[k].region.box)]
 
     def hidden_part(self, faces: Section, place: float) -> tuple[float, list[str]]:
         """Returns the share of faces that later bodies cover, and these, but for inlays within the faces."""
         above = [b for b in self.bodies if b.place > place and not b.is_clear]
-        above = [b for b in above if boxes_meet(b.section, faces) and not covers(faces, b.section)]
-        by = [b.path for b in above if not is_nothing(intersection(b.section, faces))]
-        hidden = intersection(union([b.section for b in above]), faces) if by else None
-        return (hidden.area() / faces.area() if hidden is not None else 0.0), by
+        above = [b for b in above if b.section.may_meet(faces) and not faces.covers(b.section)]
+        by = [b.path for b in above if b.section.overlaps(faces)]
+        hidden = union([b.section for b in above]) & faces if by else None
+        return (hidden.area / faces.area if hidden is not None else 0.0), by
 
     @cached_property
     def _places(self) -> list[float]:
@@ -143,15 +121,15 @@ class Ground:
         near = [(p, b) for r in outlines for p, b in zip(r.pieces, r.boxes.tolist(), strict=True)]
         near = [(p, b) for p, b in near if are_near(around, b)]
         boxes += [b for _, b in near]
-        cut = stretches_beside(own, [p for p, _ in near], boxes, self.network.tolerance)
+        cut = stretches_beside(own, [p for p, _ in near], np.array(boxes), self.network.tolerance)
         parts = [(curve, stretch) for curve, of in zip(own, cut, strict=True) for stretch in of]
-        holders = self._holders([point(curve, stretch.middle) for curve, stretch in parts], bodies)
-        pieces = (part(c, s.t0, s.t1, s.start, s.end) for c, s in parts)
+        holders = self._holders([curve.point(stretch.middle) for curve, stretch in parts], bodies)
+        pieces = (c.part(s.t0, s.t1, s.start, s.end) for c, s in parts)
         return list(zip(pieces, holders, strict=True))
 
     @cached_property
     def _at_middles(self) -> list[list[int]]:
-        return self._holders([point(curve, 0.5) for curve in self.curves], range(len(self.bodies)))
+        return self._holders([curve.point(0.5) for curve in self.curves], range(len(self.bodies)))
 
     def _holders(self, spots: Sequence[Vec], bodies: Sequence[int]) -> list[list[int]]:
         """Returns for each spot those of some bodies that it lies in."""
@@ -159,9 +137,9 @@ class Ground:
         order = np.argsort(on_grid[:, 0], kind="stable")
         along, found = on_grid[order, 0], [list[int]() for _ in spots]
         for k in bodies:
-            left, _, right, _ = self.bodies[k].section.bounds()
+            left, _, right, _ = self.bodies[k].section.box
             beside = order[np.searchsorted(along, left) : np.searchsorted(along, right, side="right")]
-            for n in beside[inside_mask(self.bodies[k].section, on_grid[beside])].tolist():
+            for n in beside[self.bodies[k].section.mask(on_grid[beside])].tolist():
                 found[n].append(k)
         return found
 
@@ -254,8 +232,8 @@ def overhang(pieces: Sequence[Piece], region: Region, *, partly: bool = False) -
     `partly` for those that lie beside it altogether.
     """
     size = float(np.ptp(region.boxes.reshape(-1, 2), axis=0).max(initial=0.0))
-    polygons = [loop_points(face.outer, 1e-5 * size) for face in region.faces]
-    spots = np.concatenate([points(piece, _TIMES) for piece in pieces])
+    polygons = [face.outer.polygon(1e-5 * size) for face in region.faces]
+    spots = np.concatenate([piece.points(_TIMES) for piece in pieces])
     out = ~inside(polygons, spots)
     if partly and out.all():
         return 0.0
@@ -312,7 +290,7 @@ def colliding_notes(
         texts: list[tuple[SolvedGeometry, _Boxed]] = []
         for top in structure.drawn:
             if own := [p for g in top.walk() if g.type == LETTERING for p in inked.get(g.path, ())]:
-                boxes = all_bounds(own)
+                boxes = [piece.box for piece in own]
                 texts.append((top, (union_bounds(boxes), own, boxes)))
         texts.sort(key=lambda text: text[1][0])
         for k, (one, boxed) in enumerate(texts):
@@ -405,31 +383,31 @@ def _rings(network: Network, way: SolvedGeometry, numbers: Mapping[int, int]) ->
     ring: list[tuple[Use, SolvedGeometry]] = []
     for place, leaf in enumerate(leaves):
         uses = network.uses[numbers[id(leaf)]]
-        if ring and last_node(network, ring[-1][0]) not in _ends(network, uses):
+        if ring and network.last(ring[-1][0]) not in _ends(network, uses):
             yield from _closed(network, ring)
             ring = []
         if ring:
-            is_turned = first_node(network, uses[0]) != last_node(network, ring[-1][0])
+            is_turned = network.first(uses[0]) != network.last(ring[-1][0])
         else:  # a curve may be drawn against the way: the next one begins where it ends
             following = network.uses[numbers[id(leaves[place + 1])]] if place + 1 < len(leaves) else uses
-            is_turned = last_node(network, uses[-1]) not in _ends(network, following)
+            is_turned = network.last(uses[-1]) not in _ends(network, following)
         ring += [(use, leaf) for use in (map(_back, reversed(uses)) if is_turned else uses)]
     yield from _closed(network, ring)
 
 
 def _closed(network: Network, ring: list[tuple[Use, SolvedGeometry]]) -> Iterator[list[_Pass]]:
     """Yields the passes of a round if it ends where it begins, and comes to a node twice."""
-    nodes = {first_node(network, use) for use, _ in ring}
-    if len(nodes) < len(ring) and first_node(network, ring[0][0]) == last_node(network, ring[-1][0]):
+    nodes = {network.first(use) for use, _ in ring}
+    if len(nodes) < len(ring) and network.first(ring[0][0]) == network.last(ring[-1][0]):
         rolled = [*ring[1:], ring[0]]
         yield [
-            _Pass(first_node(network, on), _back(use), on, leaf)
+            _Pass(network.first(on), _back(use), on, leaf)
             for (use, leaf), (on, _) in zip(ring, rolled, strict=True)
         ]
 
 
 def _ends(network: Network, uses: Sequence[Use]) -> tuple[int, int]:
-    return first_node(network, uses[0]), last_node(network, uses[-1])
+    return network.first(uses[0]), network.last(uses[-1])
 
 
 def _back(use: Use) -> Use:
@@ -452,7 +430,7 @@ def _crossings(network: Network, ring: list[_Pass]) -> Iterator[Crossing]:
 
 def _do_cross(network: Network, one: _Pass, other: _Pass) -> bool:
     """Tells whether two ways through a node change sides; what touches, or runs along, does not."""
-    ways = (derivative(network.piece(use), 0) for use in (one.back, one.on, other.back, other.on))
+    ways = (network.piece(use).derivative(0) for use in (one.back, one.on, other.back, other.on))
     base, *rest = (math.atan2(dy, dx) for dx, dy in ways)
     on, *others = ((angle - base) % math.tau for angle in rest)
     if any(min(abs(a - b), math.tau - abs(a - b)) < _FLAT for a in others for b in (0.0, on)):

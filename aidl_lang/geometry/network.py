@@ -14,29 +14,18 @@ import numpy as np
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint, give_up
 from aidl_lang.geometry.curves import (
-    TAU,
-    Arc,
     Bezier,
     Bounds,
-    Circle,
     Floats,
     Ints,
     Line,
     Mask,
     Piece,
     Vec,
-    bounds,
-    ends,
-    is_closed,
     larger_side,
-    locate,
-    part,
-    point,
-    round_range,
     union_bounds,
 )
-from aidl_lang.geometry.intersect import Table, all_intersections, self_crossing, sorted_cuts
-from aidl_lang.geometry.nearness import Sides, near_rows
+from aidl_lang.geometry.intersect import Sides, Table, all_intersections, near_rows, self_crossing
 
 # --- Proofs, for many pairs of curves at once, that two curves meet at most in an end that they share.
 #
@@ -137,7 +126,7 @@ def _hulls(table: Table) -> Floats:
     found = table.at(np.repeat(np.arange(count), len(marks)), np.tile(marks, count), 1)
     spots, ways = found.reshape(2, count, len(marks), 2)
     if count:  # what was stored is where it ends
-        spots[:, 0], spots[:, -1] = np.array([ends(c) for c in table.curves]).transpose(1, 0, 2)
+        spots[:, 0], spots[:, -1] = np.array([c.ends for c in table.curves]).transpose(1, 0, 2)
     sweep = np.where(table.is_round, table.rows[:, 7], 1.0)
     reach = np.where(table.is_round, np.tan(sweep / (2 * PARTS)) / sweep, 1 / (3 * PARTS))
     off = reach[:, None, None] * ways
@@ -242,7 +231,7 @@ class Network:
         self, curves: Sequence[Piece], boxes: Sequence[Bounds] | None = None, box: Bounds | None = None
     ) -> None:
         self.curves = list(curves)
-        self.boxes = [bounds(c) for c in self.curves] if boxes is None else list(boxes)
+        self.boxes = [c.box for c in self.curves] if boxes is None else list(boxes)
         self.box = union_bounds(self.boxes) if box is None else box
         left, bottom, right, top = self.box
         self.size = larger_side(self.box) or 1.0
@@ -268,7 +257,7 @@ class Network:
     # -- cutting -----------------------------------------------------------------------------------------
 
     def _arrange(self) -> list[list[Use]]:
-        both = [ends(curve) for curve in self.curves]
+        both = [curve.ends for curve in self.curves]
         # In order of place: which of two near ends the node takes must not depend on the order of writing.
         for p in sorted(p for pair in both for p in pair):
             self.node(p)
@@ -276,8 +265,8 @@ class Network:
         own_ends = [(c[0][1], c[1][1]) for c in cuts]
         for curve, own in zip(self.curves, cuts, strict=True):
             if isinstance(curve, Bezier) and (loop := self_crossing(curve)) is not None:
-                node, middle = self.node(point(curve, loop[0])), sum(loop) / 2
-                own += [(loop[0], node), (middle, self.node(point(curve, middle))), (loop[1], node)]
+                node, middle = self.node(curve.point(loop[0])), sum(loop) / 2
+                own += [(loop[0], node), (middle, self.node(curve.point(middle))), (loop[1], node)]
         own_nodes = np.array(own_ends, dtype=np.intp).reshape(-1, 2)
         places = np.array(self.nodes).reshape(-1, 2)
         hulls = Hulls(self._table, self.tolerance)
@@ -287,7 +276,7 @@ class Network:
         # One curve twice is not cut: its edges are shared.
         pairs = pairs[[self.curves[i] != self.curves[j] for i, j in pairs.tolist()]]
         for number, node in self._ends_on_others(hulls, pairs, own_nodes, places):
-            t = locate(self.curves[number], self.nodes[node], self.tolerance)
+            t = self.curves[number].locate(self.nodes[node], self.tolerance)
             if t is not None:
                 cuts[number].append((t, node))
         crossings = all_intersections(self._table, pairs, self.tolerance)
@@ -297,7 +286,7 @@ class Network:
                 for number, at in ((i, t), (j, s)):
                     if node not in own_ends[number]:
                         cuts[number].append((at, node))
-        return [self._split(i, sorted_cuts(c)) for i, c in enumerate(cuts)]
+        return [self._split(i, _sorted_cuts(c)) for i, c in enumerate(cuts)]
 
     def _ends_on_others(
         self, hulls: Hulls, pairs: Ints, own_nodes: Ints, places: Floats
@@ -318,14 +307,14 @@ class Network:
             # Both ends in one node: a whole circle or ellipse, else too short to see.
             node = cuts[0][1]
             is_large = larger_side(self.boxes[number]) > 4 * self.tolerance
-            whole = is_closed(curve) or (not isinstance(curve, Line) and is_large)
+            whole = curve.is_closed or (not isinstance(curve, Line) and is_large)
             return [self._edge(number, 0.0, 1.0, node, node)] if whole else []
         return [self._edge(number, t0, t1, a, b) for (t0, a), (t1, b) in pairwise(cuts)]
 
     def _edge(self, number: int, t0: float, t1: float, start: int, end: int) -> Use:
         """Returns the edge for this part of a curve: the one that lies there already, or a new one."""
         curve = self.curves[number]
-        middle = -1 if isinstance(curve, Line) else self._middles.number(point(curve, (t0 + t1) / 2))
+        middle = -1 if isinstance(curve, Line) else self._middles.number(curve.point((t0 + t1) / 2))
         key = (min(start, end), max(start, end), middle)
         known = self._known.get(key)
         if known is not None:
@@ -338,9 +327,9 @@ class Network:
     def _same_way(self, edge: Edge, number: int, t0: float, t1: float, start: int) -> bool:
         if edge.start != edge.end:
             return edge.start == start
-        early = point(self.curves[number], t0 + (t1 - t0) / 8)
+        early = self.curves[number].point(t0 + (t1 - t0) / 8)
         ways = (edge.t1 - edge.t0) / 8
-        first, last = (point(self.curves[edge.curve], t) for t in (edge.t0 + ways, edge.t1 - ways))
+        first, last = (self.curves[edge.curve].point(t) for t in (edge.t0 + ways, edge.t1 - ways))
         return math.dist(early, first) <= math.dist(early, last)
 
     # -- polylines and the way back ------------------------------------------------------------------------
@@ -371,6 +360,15 @@ class Network:
             edge = edges[k]
             self.straight[edge.start, edge.end] = self.straight[edge.end, edge.start] = k
 
+    def first(self, use: Use) -> int:
+        """Returns the node at which the use of an edge begins."""
+        edge = self.edges[use[0]]
+        return edge.start if use[1] else edge.end
+
+    def last(self, use: Use) -> int:
+        """Returns the node at which the use of an edge ends."""
+        return self.first((use[0], not use[1]))
+
     def inner(self, use: Use) -> Ints:
         """Returns the grid points strictly between the ends of an edge, in the direction of the use."""
         begin = self._offset[use[0]]
@@ -386,11 +384,9 @@ class Network:
     def polyline(self, uses: Sequence[Use]) -> Floats:
         """Returns the closed polygon through these edges, in grid units as Manifold takes them."""
         rows: list[Ints] = []
-        for number, forward in uses:
-            edge = self.edges[number]
-            node = edge.start if forward else edge.end
-            rows.append(self.node_grid[node : node + 1])
-            rows.append(self.inner((number, forward)))
+        for use in uses:
+            node = self.first(use)
+            rows += [self.node_grid[node : node + 1], self.inner(use)]
         return np.concatenate(rows).astype(np.float64) * GRID
 
     def meeting(self, numbers: Iterable[int]) -> Counter[int]:
@@ -401,9 +397,8 @@ class Network:
     def piece(self, use: Use) -> Piece:
         """Returns the part of its curve that runs along an edge, in the direction of the use."""
         edge = self.edges[use[0]]
-        ways = (edge.t0, edge.t1, edge.start, edge.end), (edge.t1, edge.t0, edge.end, edge.start)
-        t0, t1, start, end = ways[0] if use[1] else ways[1]
-        return part(self.curves[edge.curve], t0, t1, self.nodes[start], self.nodes[end])
+        t0, t1 = (edge.t0, edge.t1) if use[1] else (edge.t1, edge.t0)
+        return self.curves[edge.curve].part(t0, t1, self.nodes[self.first(use)], self.nodes[self.last(use)])
 
     def midpoints(self, numbers: Sequence[int]) -> Floats:
         """Returns a point about halfway along each of some edges, in grid units."""
@@ -456,13 +451,13 @@ class Network:
         return self._sides
 
 
-def with_finer_chords(network: Network, work: Callable[[], T]) -> T:
-    """Returns the result of `work`, done again with finer chords while curves come too close for them."""
+def with_finer_chords(network: Network, work: Callable[[Network], T]) -> T:
+    """Returns the result of work, done again with finer chords while curves come too close for them."""
     network.may_refine = True
     while True:
         checkpoint()
         try:
-            result = work()
+            result = work(network)
         except TooCoarse:
             network.refine()
         else:
@@ -487,7 +482,12 @@ def _segments(curve: Piece, share: float, chord: float) -> int:
             math.hypot(p1[0] - 2 * p2[0] + p3[0], p1[1] - 2 * p2[1] + p3[1]),
         )
         return max(3, min(200, math.ceil(share * math.sqrt(0.75 * bend / chord))))
-    radius = curve.radius if isinstance(curve, Arc | Circle) else max(curve.rx, curve.ry)
-    sweep = abs(round_range(curve)[1]) * share
-    step = min(TAU / 32, 2 * math.acos(max(0.0, 1 - chord / max(radius, chord))))
-    return max(2, min(2000, math.ceil(sweep / step)))
+    _, rx, ry, *_, sweep = curve.frame
+    step = min(math.tau / 32, 2 * math.acos(max(0.0, 1 - chord / max(rx, ry, chord))))
+    return max(2, min(2000, math.ceil(abs(sweep) * share / step)))
+
+
+def _sorted_cuts(cuts: list[tuple[float, int]]) -> list[tuple[float, int]]:
+    """Returns cuts in order of their parameter, a node that follows itself kept once."""
+    cuts = sorted(cuts)
+    return cuts[:1] + [b for a, b in pairwise(cuts) if b[1] != a[1]]

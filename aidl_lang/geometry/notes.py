@@ -13,29 +13,13 @@ from itertools import combinations, islice
 from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix, Label
 from aidl_lang.common.prose import counted, named, rough, ticked
 from aidl_lang.common.source import Span
-from aidl_lang.geometry.bodies import (
-    CoveredHoles,
-    CrossedOutline,
-    End,
-    FilledHole,
-    Finding,
-    Gap,
-    IdleHole,
-    InnerLoop,
-    LooseCurves,
-    ends_of,
-)
-from aidl_lang.geometry.boolean import Contacts
-from aidl_lang.geometry.curves import LARGEST, NO_LENGTH, Bezier, Vec, bounds, ends, is_finite, larger_side
+from aidl_lang.geometry.bodies import CoveredHoles, CrossedOutline, End, Gap, InnerLoop, LooseCurves, ends_of
+from aidl_lang.geometry.curves import LARGEST, NO_LENGTH, Bezier, Vec, larger_side
 from aidl_lang.geometry.faces import is_winding
 from aidl_lang.geometry.network import Network
-from aidl_lang.geometry.solved import SolvedGeometry, SolvedStructure
+from aidl_lang.geometry.solved import SolvedGeometry, SolvedStructure, at
 
 GUIDE = "to guide other geometry only, write `construction` before it"
-
-
-def at(p: Vec) -> str:
-    return f"({rough(p[0])}, {rough(p[1])})"
 
 
 def local(structure: SolvedStructure, geometry: SolvedGeometry) -> str:
@@ -169,7 +153,7 @@ def _primitive_paths(geometry: SolvedGeometry) -> list[str]:
     is_seen = (
         geometry.curve is not None
         and not geometry.construction
-        and not larger_side(bounds(geometry.curve)) < NO_LENGTH
+        and not larger_side(geometry.curve.box) < NO_LENGTH
     )
     own = [geometry.path] if is_seen else []
     return own + [path for part in geometry.parts for path in _primitive_paths(part)]
@@ -233,57 +217,6 @@ def _join_fix(structure: SolvedStructure, equation: str) -> Fix | None:
     return Fix("join the two ends", (Edit(place, text),))
 
 
-def _idle_hole(finding: IdleHole) -> Diagnostic:
-    hole, holder = finding.hole, finding.holder
-    if holder is None:
-        return Diagnostic(
-            "W0703",
-            f"hole `{hole.path}` cuts nothing: no structure holds it",
-            hole.span,
-            "the root of the program is a hole",
-            hints=(f"write it inside the solid it shall cut: `solid … {{ hole {hole.name} {{ … }} }}`",),
-        )
-    below = hole.path.removeprefix(f"{holder.path}.")
-    hints = [
-        f"place it inside: `constrain inside({below}, …)` in `{holder.path}`, or move it to "
-        "the structure that it shall cut: a hole cuts the structure that holds it, with all its children"
-    ]
-    if hole.box and holder.box:
-        hints.insert(0, f"the hole spans {_spans(hole)}, `{holder.name}` spans {_spans(holder)}")
-    return Diagnostic(
-        "W0703",
-        f"hole `{hole.path}` removes nothing from {holder.kind} `{holder.path}`",
-        hole.span,
-        "no material here",
-        (Label(holder.span, "holds the hole"),) if holder.span else (),
-        tuple(hints),
-    )
-
-
-def _spans(structure: SolvedStructure) -> str:
-    box = structure.box
-    assert box is not None
-    return f"{at((box.left, box.bottom))} to {at((box.right, box.top))}"
-
-
-def _filled_hole(finding: FilledHole) -> Diagnostic:
-    hole, holder, filler = finding.hole, finding.holder, finding.filler
-    by = f"`{filler.path}`" if filler else "other material"
-    hints = [f"to cut all of `{holder.path}`, move the hole up into it, beside the parts that it shall cut"]
-    if filler is not None and holder.kind == "solid":
-        hints.append(
-            f"to keep `{filler.name}` a part of its own in the hole, make `{holder.name}` an `assembly`"
-        )
-    return Diagnostic(
-        "W0704",
-        f"hole `{hole.path}` is filled again by {by} in {holder.kind} `{holder.path}`",
-        hole.span,
-        "nothing of this hole remains",
-        (Label(filler.span, "fills it"),) if filler and filler.span else (),
-        tuple(hints),
-    )
-
-
 def _covered_holes(finding: CoveredHoles) -> Diagnostic:
     s, count = finding.structure, finding.count
     face, by = named([local(s, g) for g in finding.face.geometries]), [local(s, g) for g in finding.covers]
@@ -301,20 +234,6 @@ def _covered_holes(finding: CoveredHoles) -> Diagnostic:
             "to see them as two pieces, make each a `solid` of its own in an `assembly`",
         ),
     )
-
-
-def detached_notes(root: SolvedStructure, paths: Sequence[str], contacts: Contacts) -> list[Diagnostic]:
-    """Returns a warning for each statement with bodies that touch and overlap none of the others."""
-    free = marked_detached(root)
-    if sum(path not in free for path in paths) < 2:
-        return []  # there is nothing that a part could touch
-    held = {path for pair in contacts.near() for path in pair}
-    structures = {s.path: s for s in root.walk()}
-    lonely: dict[object, list[SolvedStructure]] = {}
-    for path in paths:
-        if path not in held and path not in free:
-            lonely.setdefault(structures[path].span or path, []).append(structures[path])
-    return [_detached(alike, contacts.nearest(alike[0].path)) for alike in lonely.values()]
 
 
 def united_notes(
@@ -357,36 +276,6 @@ def _united(
     )
 
 
-def marked_detached(root: SolvedStructure) -> set[str]:
-    """Returns the paths of structures that are `@detached`, or lie in one that is."""
-    return {
-        below.path
-        for s in root.walk()
-        if "detached" in s.attributes and s.attributes["detached"] != (False,)
-        for below in s.walk()
-    }
-
-
-def _detached(structures: Sequence[SolvedStructure], nearest: tuple[float, str]) -> Diagnostic:
-    """Returns the warning about the bodies of one statement; `nearest` is what is nearest to the first."""
-    structure, is_one = structures[0], len(structures) == 1
-    to = "" if is_one else f" to `{structure.path}`"
-    message = (
-        f"{named(s.path for s in structures)} {'touches' if is_one else 'touch'} no other part; "
-        f"the nearest{to}, `{nearest[1]}`, is {rough(nearest[0])} mm away"
-    )
-    hints = (
-        "to join them, let their borders meet: `gap: 0`, `touching(…)` or `on_top_of(…)`",
-        "if that is meant, say so: `@detached` before its definition",
-    )
-    span, fix = structure.span, None
-    is_plain = span and re.match(r"(@|[a-z]+\s+\w+\s*(\[|\(|\{|at\b|rotated\b))", span.text)
-    if span and is_plain and "detached" not in structure.attributes:
-        fix = Fix("say that it is meant", (Edit(Span(span.source, span.start, span.start), "@detached "),))
-    label = "stands by itself" if is_one else "each stands by itself"
-    return Diagnostic("W0705", message, span, label, hints=hints, fix=fix)
-
-
 def stroked_note(structure: SolvedStructure, text: SolvedGeometry) -> Diagnostic:
     """Returns the error on letters of single lines that are to enclose something."""
     return Diagnostic(
@@ -405,11 +294,11 @@ def stroked_note(structure: SolvedStructure, text: SolvedGeometry) -> Diagnostic
 def unusable_note(structure: SolvedStructure, leaf: SolvedGeometry, whole: SolvedGeometry) -> Diagnostic:
     """Returns the diagnostic on a curve without extent or place; `whole` is the geometry not drawn."""
     name, curve = local(structure, whole), leaf.curve
-    if curve is not None and not is_finite(curve):
+    if curve is not None and not curve.is_finite():
         what = "has no place"
         label = "its coordinates divide by zero or leave the range of numbers"
         hint = "look for a division by an unknown that starts at 0, and give it another first guess"
-    elif curve is not None and not max(map(abs, bounds(curve))) <= LARGEST:
+    elif curve is not None and not max(map(abs, curve.box)) <= LARGEST:
         what, label = "is too large", f"this {whole.type} reaches further than {LARGEST:g} mm"
         hint = "look for a size or position that was written in another unit, or multiplied once too often"
     else:
@@ -433,17 +322,17 @@ _MOST_ENDS = 100
 """Open ends of one outline among which the two nearest are sought."""
 
 
-def finding_notes(finding: Finding, network: Network) -> Iterator[Diagnostic]:
+def finding_notes(
+    finding: InnerLoop | CoveredHoles | CrossedOutline | LooseCurves | Diagnostic, network: Network
+) -> Iterator[Diagnostic]:
     """Yields the warnings about a finding: open curves are one only in solids and holes, those imported
     apart.
     """
     match finding:
         case InnerLoop():
             yield _inner_loop(finding)
-        case IdleHole():
-            yield _idle_hole(finding)
-        case FilledHole():
-            yield _filled_hole(finding)
+        case Diagnostic():
+            yield finding
         case CoveredHoles():
             yield _covered_holes(finding)
         case CrossedOutline():
@@ -472,7 +361,7 @@ def _open(
     meeting = network.meeting(finding.numbers)
     outlines: dict[str, list[Vec]] = defaultdict(list)
     for leaf, number in curves:
-        loose = [p for p in ends(network.curves[number]) if meeting[network.node(p)] <= 1]
+        loose = [p for p in network.curves[number].ends if meeting[network.node(p)] <= 1]
         outlines[leaf.path.rpartition(".")[0]] += loose
     name, loose = min(outlines.items(), key=lambda item: _apart(_nearest(item[1])))
     gap = _nearest(loose)

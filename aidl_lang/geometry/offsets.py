@@ -9,33 +9,10 @@ from itertools import pairwise
 import numpy as np
 
 from aidl_lang.common.records import record
-from aidl_lang.geometry.curves import (
-    Arc,
-    Bezier,
-    Circle,
-    Floats,
-    Line,
-    Piece,
-    Vec,
-    bounds,
-    derivative,
-    ends,
-    extreme_parameters,
-    is_closed,
-    larger_side,
-    nearest,
-    part,
-    point,
-    points,
-    reverse,
-    second_derivative,
-    turn_between,
-    union_bounds,
-)
-from aidl_lang.geometry.finishing import direction, parallel
-from aidl_lang.geometry.network import Network, with_finer_chords
+from aidl_lang.geometry.curves import Arc, Bezier, Circle, Floats, Line, Piece, Vec, extent, turn_between
+from aidl_lang.geometry.network import Network
 from aidl_lang.geometry.region import Face, Loop, Region
-from aidl_lang.geometry.sections import difference, filled, trace, union
+from aidl_lang.geometry.sections import Section, arranged, filled, union
 
 # --- The pieces that offsets are put together from: strips along curves, wedges at corners, caps at ends.
 #
@@ -63,7 +40,7 @@ _SHARPEST = math.radians(168.5)
 def beside(curve: Piece, left: float) -> Iterator[Strip]:
     """Yields the strips within a distance to the left of a curve (to its right for a negative one)."""
     if isinstance(curve, Line):
-        yield (_between(curve, Line(parallel(curve, 0.0, left), parallel(curve, 1.0, left))),)
+        yield (_between(curve, Line(curve.parallel(0.0, left), curve.parallel(1.0, left))),)
     elif isinstance(curve, Circle):
         other = curve.radius - left
         yield ((curve,), (Circle(curve.center, other),)) if other > 0 else ((curve,),)
@@ -75,10 +52,10 @@ def beside(curve: Piece, left: float) -> Iterator[Strip]:
 
 def _between(curve: Piece, other: Piece) -> Outline:
     """Returns the outline from a curve to one beside it and back."""
-    (a, b), (c, d) = ends(curve), ends(other)
+    (a, b), (c, d) = curve.ends, other.ends
     return tuple(
         p
-        for p in (curve, Line(b, d), reverse(other), Line(c, a))
+        for p in (curve, Line(b, d), other.reversed(), Line(c, a))
         if not isinstance(p, Line) or p.start != p.end
     )
 
@@ -100,9 +77,9 @@ def _beside_free(curve: Piece, left: float) -> Iterator[Strip]:
     than the distance. A part ends where the curve is level or upright, and there the fit is exact: the box of
     the parallel curve is that of the curve moved out.
     """
-    x0, y0, x1, y1 = bounds(curve)
+    x0, y0, x1, y1 = curve.box
     scale = abs(left) + max(x1 - x0, y1 - y0)
-    inner = sorted(t for t in extreme_parameters(curve) if _SHORTEST < t < 1 - _SHORTEST)
+    inner = sorted(t for t in curve.extremes() if _SHORTEST < t < 1 - _SHORTEST)
     cuts = [t for t, after in pairwise([*inner, 1.0]) if after - t > _SHORTEST]
     stack = [(t0, t1, 0) for t0, t1 in pairwise([0.0, *cuts, 1.0])][::-1]
     while stack:
@@ -114,9 +91,9 @@ def _beside_free(curve: Piece, left: float) -> Iterator[Strip]:
             is_fine = _error(curve, t0, t1, left, top) <= FIT * scale
         else:
             top = Line(*(_reached(curve, t, left) for t in (t0, t1)))
-            is_fine = all(bent) and abs(turn_between(direction(curve, t0), direction(curve, t1))) < _BEND
+            is_fine = all(bent) and abs(turn_between(curve.direction(t0), curve.direction(t1))) < _BEND
         if is_fine or depth >= _DEEPEST:
-            yield (_between(part(curve, t0, t1, point(curve, t0), point(curve, t1)), top),)
+            yield (_between(curve.part(t0, t1, curve.point(t0), curve.point(t1)), top),)
         else:
             half = (t0 + t1) / 2
             stack += [(half, t1, depth + 1), (t0, half, depth + 1)]
@@ -125,20 +102,20 @@ def _beside_free(curve: Piece, left: float) -> Iterator[Strip]:
 def _reached(curve: Piece, t: float, left: float) -> Vec:
     """Returns the end of a normal a little beyond the centre of curvature, but within the distance."""
     stretch = _stretch(curve, t, left)
-    return parallel(curve, t, left * min(1.0, 1.1 / abs(1 - stretch)) if stretch != 1 else left)
+    return curve.parallel(t, left * min(1.0, 1.1 / abs(1 - stretch)) if stretch != 1 else left)
 
 
 def _stretch(curve: Piece, t: float, left: float) -> float:
     """Returns the length of a step on the parallel curve for one on the curve: 1 - left · curvature."""
-    (dx, dy), (ax, ay) = derivative(curve, t), second_derivative(curve, t)
+    (dx, dy), (ax, ay) = curve.derivative(t), curve.second_derivative(t)
     speed = math.hypot(dx, dy)
     return 1 - left * (dx * ay - dy * ax) / speed**3 if speed else 1.0
 
 
 def _fitted(curve: Piece, t0: float, t1: float, left: float) -> Bezier:
     """Returns the cubic with the ends and the derivatives of the parallel curve."""
-    p, q = parallel(curve, t0, left), parallel(curve, t1, left)
-    (ax, ay), (bx, by) = derivative(curve, t0), derivative(curve, t1)
+    p, q = curve.parallel(t0, left), curve.parallel(t1, left)
+    (ax, ay), (bx, by) = curve.derivative(t0), curve.derivative(t1)
     u, v = (_stretch(curve, t, left) * (t1 - t0) / 3 for t in (t0, t1))
     return Bezier(p, (p[0] + u * ax, p[1] + u * ay), (q[0] - v * bx, q[1] - v * by), q)
 
@@ -148,7 +125,7 @@ def _error(curve: Piece, t0: float, t1: float, left: float, fitted: Bezier) -> f
     worst = 0.0
     for s in (0.2, 0.35, 0.5, 0.65, 0.8):
         t = t0 + s * (t1 - t0)
-        (px, py), (qx, qy), (dx, dy) = parallel(curve, t, left), point(fitted, s), direction(curve, t)
+        (px, py), (qx, qy), (dx, dy) = curve.parallel(t, left), fitted.point(s), curve.direction(t)
         worst = max(worst, abs((qx - px) * dy - (qy - py) * dx))
     return worst
 
@@ -207,8 +184,8 @@ def offset(region: Region, distance: float, sharp: bool = True) -> Region:
         for piece, after in zip(loop.pieces, (*loop.pieces[1:], loop.pieces[0]), strict=True):
             along = list(beside(piece, left))
             strips += along
-            if not is_closed(piece):
-                strips += wedge(ends(piece)[1], direction(piece, 1.0), direction(after, 0.0), left, sharp)
+            if not piece.is_closed:
+                strips += wedge(piece.ends[1], piece.direction(1.0), after.direction(0.0), left, sharp)
             # Cut where its strips are, so that the outline and they have the same curves.
             is_whole = isinstance(piece, Line | Arc | Circle)
             parts += [piece] if is_whole else [strip[0][0] for strip in along]
@@ -220,7 +197,7 @@ def offset(region: Region, distance: float, sharp: bool = True) -> Region:
 def thick(curves: Sequence[Piece], width: float, caps: str = "round", sharp: bool = False) -> Region:
     """Returns what a pen of a width draws along curves; where more than two meet, the joint is round."""
     half = width / 2
-    near = NEAR * (larger_side(union_bounds([bounds(c) for c in curves])) or 1.0)
+    near = NEAR * extent(curves)
     strips: list[Strip] = [s for c in curves for side in (half, -half) for s in beside(c, side)]
     for at, leaving in _joints(curves, near):
         if len(leaving) > 2:
@@ -238,10 +215,10 @@ def _joints(curves: Sequence[Piece], near: float) -> list[tuple[Vec, list[Vec]]]
     """Returns the points where open curves end, with the directions in which they leave them."""
     found: list[tuple[Vec, list[Vec]]] = []
     for curve in curves:
-        if is_closed(curve):
+        if curve.is_closed:
             continue
-        (start, end), (dx, dy) = ends(curve), direction(curve, 1.0)
-        for p, way in ((start, direction(curve, 0.0)), (end, (-dx, -dy))):
+        (start, end), (dx, dy) = curve.ends, curve.direction(1.0)
+        for p, way in ((start, curve.direction(0.0)), (end, (-dx, -dy))):
             ways = next((w for q, w in found if math.dist(p, q) <= near), None)
             if ways is None:
                 found.append((p, [way]))
@@ -252,18 +229,17 @@ def _joints(curves: Sequence[Piece], near: float) -> list[tuple[Vec, list[Vec]]]
 
 def _combined(region: Region, strips: Sequence[Strip], *, cut: bool) -> Region:
     strokes = (p for strip in strips for outline in strip for p in outline)
-    network = Network([*region.pieces, *strokes])
 
-    def traced() -> Region:
+    def area(network: Network) -> Section:
         place, sections = len(region.pieces), []
         for strip in strips:
             # Normals of a curve that bends closely cross: all that a single outline goes around counts.
             sections.append(filled(network, strip, place, "NonZero" if len(strip) == 1 else "EvenOdd"))
             place += sum(map(len, strip))
         base, added = filled(network, [loop.pieces for loop in region.loops], 0), union(sections)
-        return trace(network, difference(base, added) if cut else union([base, added])).region
+        return base - added if cut else union([base, added])
 
-    return with_finer_chords(network, traced)
+    return arranged([*region.pieces, *strokes], area)
 
 
 # --- The convex hull of curves: parts of the curves themselves, and the straight lines that touch two of
@@ -289,20 +265,20 @@ class _HullContact:
 def hull(curves: Sequence[Piece]) -> Region:
     """Returns the least convex region around the curves; empty if they lie on one line."""
     contacts = _contacts(_distinct(curves))
-    if len(contacts) == 1 and is_closed(contacts[0].curve):
+    if len(contacts) == 1 and contacts[0].curve.is_closed:
         return Region((Face(Loop((contacts[0].curve,))),))
     spots = [_touch(a, b) for a, b in zip(contacts, contacts[1:] + contacts[:1], strict=True)]
     pieces: list[Piece] = []
     for k, contact in enumerate(contacts):
         arrived, left = spots[k - 1][1], spots[k][0]
-        p, q = point(contact.curve, arrived), point(contact.curve, left)
+        p, q = contact.curve.point(arrived), contact.curve.point(left)
         if arrived != left:
             # the hull runs round closed ones forwards
-            stop = arrived + (left - arrived) % 1.0 if is_closed(contact.curve) else left
-            pieces.append(part(contact.curve, arrived, stop, p, q))
-        pieces.append(Line(q, point(contacts[(k + 1) % len(contacts)].curve, spots[k][1])))
-    size = max((math.dist(ends(a)[0], ends(pieces[0])[0]) for a in pieces), default=0.0)
-    kept = [p for p in pieces if math.dist(*ends(p)) > _NEAR * size]
+            stop = arrived + (left - arrived) % 1.0 if contact.curve.is_closed else left
+            pieces.append(contact.curve.part(arrived, stop, p, q))
+        pieces.append(Line(q, contacts[(k + 1) % len(contacts)].curve.point(spots[k][1])))
+    size = max((math.dist(a.ends[0], pieces[0].ends[0]) for a in pieces), default=0.0)
+    kept = [p for p in pieces if math.dist(*p.ends) > _NEAR * size]
     return Region((Face(Loop(tuple(_joined(kept)))),)) if len(kept) > 1 else Region()
 
 
@@ -327,7 +303,7 @@ def _contacts(curves: Sequence[Piece]) -> list[_HullContact]:
     samples = [_spread(curve) for curve in curves]
     owner = [number for number, ts in enumerate(samples) for _ in ts]
     place = [k for ts in samples for k in range(len(ts))]
-    around = _convex(np.concatenate([points(c, ts) for c, ts in zip(curves, samples, strict=True)]))
+    around = _convex(np.concatenate([c.points(ts) for c, ts in zip(curves, samples, strict=True)]))
     if len(around) < 3:
         return []
     runs: list[list[int]] = []
@@ -335,7 +311,7 @@ def _contacts(curves: Sequence[Piece]) -> list[_HullContact]:
     def follows(a: int, b: int) -> bool:
         count = len(samples[owner[a]])
         step = abs(place[a] - place[b])
-        around_end = is_closed(curves[owner[a]]) and step == count - 1
+        around_end = curves[owner[a]].is_closed and step == count - 1
         return owner[a] == owner[b] and not isinstance(curves[owner[a]], Line) and (step == 1 or around_end)
 
     for k in around:
@@ -354,7 +330,7 @@ def _contacts(curves: Sequence[Piece]) -> list[_HullContact]:
 def _spread(curve: Piece) -> Floats:
     if isinstance(curve, Line):
         return np.array([0.0, 1.0])
-    return np.arange(_SAMPLES + (not is_closed(curve))) / _SAMPLES
+    return np.arange(_SAMPLES + (not curve.is_closed)) / _SAMPLES
 
 
 def _convex(p: Floats) -> list[int]:
@@ -384,9 +360,9 @@ def _touch(a: _HullContact, b: _HullContact) -> tuple[float, float]:
         # A point of touch beyond the end of an arc: the hull touches the end itself.
         u, v = (_parameter(c.curve, p, at) for c, p, at in ((a, ways[0], t), (b, ways[1], s)))
         if u is None:
-            one = point(a.curve, t), 0.0
+            one = a.curve.point(t), 0.0
         if v is None:
-            other = point(b.curve, s), 0.0
+            other = b.curve.point(s), 0.0
         if u is not None and v is not None:
             found = u if one[1] else t, v if other[1] else s
             if _is_near(a.curve, found[0], t) and _is_near(b.curve, found[1], s):
@@ -394,8 +370,8 @@ def _touch(a: _HullContact, b: _HullContact) -> tuple[float, float]:
             break  # discs that all but coincide are touched anywhere
     for _ in range(100):
         before = t, s
-        t = _tangent_from(a.curve, point(b.curve, s), t)
-        s = _tangent_from(b.curve, point(a.curve, t), s)
+        t = _tangent_from(a.curve, b.curve.point(s), t)
+        s = _tangent_from(b.curve, a.curve.point(t), s)
         if abs(t - before[0]) + abs(s - before[1]) < 1e-14:
             break
     return t, s
@@ -404,13 +380,13 @@ def _touch(a: _HullContact, b: _HullContact) -> tuple[float, float]:
 def _is_near(curve: Piece, t: float, sampled: float) -> bool:
     """Tells whether a parameter lies between the samples around the one that the sampling told."""
     away = abs(t - sampled)
-    return min(away, 1 - away if is_closed(curve) else away) < 2 / _SAMPLES
+    return min(away, 1 - away if curve.is_closed else away) < 2 / _SAMPLES
 
 
 def _disc(curve: Piece, t: float) -> tuple[Vec, float] | None:
     """Returns a centre and a radius; the end of a line is a disc without extent."""
     if isinstance(curve, Line):
-        return point(curve, t), 0.0
+        return curve.point(t), 0.0
     return (curve.center, curve.radius) if isinstance(curve, Arc | Circle) else None
 
 
@@ -435,14 +411,14 @@ def _parameter(curve: Piece, p: Vec, about: float) -> float | None:
     """Returns where a curve passes a point of its circle; None if beyond the end that the hull touches."""
     if isinstance(curve, Line):
         return about
-    t = nearest(curve, p)
+    t = curve.nearest(p)
     size = curve.radius if isinstance(curve, Arc | Circle) else 1.0
-    if is_closed(curve) or about not in (0.0, 1.0):
+    if curve.is_closed or about not in (0.0, 1.0):
         return t
-    if math.dist(point(curve, about), p) <= _NEAR * size:
+    if math.dist(curve.point(about), p) <= _NEAR * size:
         return about
     # A point off the arc, or one elsewhere on it, where the same circle is touched from another side.
-    on_arc = math.dist(point(curve, t), p) <= _NEAR * size
+    on_arc = math.dist(curve.point(t), p) <= _NEAR * size
     return t if on_arc and _is_near(curve, t, about) else None
 
 
@@ -452,11 +428,11 @@ def _tangent_from(curve: Piece, p: Vec, t: float) -> float:
         return t
 
     def across(t: float) -> float:
-        (x, y), (dx, dy) = point(curve, t), derivative(curve, t)
+        (x, y), (dx, dy) = curve.point(t), curve.derivative(t)
         return dx * (p[1] - y) - dy * (p[0] - x)
 
     low, high = t - 1.5 / _SAMPLES, t + 1.5 / _SAMPLES
-    if not is_closed(curve):
+    if not curve.is_closed:
         low, high = max(0.0, low), min(1.0, high)
     first = across(low)
     if first * across(high) > 0:
@@ -471,7 +447,7 @@ def _joined(pieces: list[Piece]) -> list[Piece]:
     """Returns the pieces with each starting where the one before it ends."""
     result: list[Piece] = []
     for k, piece in enumerate(pieces):
-        start = ends(pieces[k - 1])[1]
-        end = ends(piece)[1]
-        result.append(Line(start, end) if isinstance(piece, Line) else part(piece, 0.0, 1.0, start, end))
+        start = pieces[k - 1].ends[1]
+        end = piece.ends[1]
+        result.append(Line(start, end) if isinstance(piece, Line) else piece.part(0.0, 1.0, start, end))
     return result

@@ -10,19 +10,11 @@ from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix, Label
 from aidl_lang.common.prose import named, rough
 from aidl_lang.common.records import record
 from aidl_lang.common.source import Span
-from aidl_lang.geometry.finishing import (
-    Corner,
-    Result,
-    TooLarge,
-    Work,
-    arms_at,
-    corners_of,
-    finish,
-    largest,
-    sized,
-)
-from aidl_lang.geometry.notes import at, local
-from aidl_lang.geometry.solved import Finish, Leaves, Recipe, SolvedGeometry, SolvedStructure
+from aidl_lang.geometry import finishing
+from aidl_lang.geometry.finishing import Corner, Result, TooLarge, Work
+from aidl_lang.geometry.notes import local
+from aidl_lang.geometry.solved import Finish, Leaves, Recipe, SolvedGeometry, SolvedStructure, at
+from aidl_lang.geometry.tiling import MOST
 
 _ONE_WAY = 5
 """Points of a lattice that has no second step."""
@@ -97,11 +89,11 @@ def no_lattice(g: SolvedGeometry, recipe: Recipe) -> Diagnostic:
     )
 
 
-def too_many(g: SolvedGeometry, recipe: Recipe, count: int, most: int) -> Diagnostic:
+def too_many(g: SolvedGeometry, recipe: Recipe, count: int) -> Diagnostic:
     region = recipe.operands[1][0].name
     return Diagnostic(
         "E0357",
-        f"`{g.path}` takes {count:,} copies to fill `{region}`, and {most:,} is the most",
+        f"`{g.path}` takes {count:,} copies to fill `{region}`, and {MOST:,} is the most",
         g.span,
         "too fine for this region",
         hints=("choose longer steps (a larger pitch), or fill a smaller region",),
@@ -159,9 +151,9 @@ def no_corner(f: Finish, leaves: Leaves, near: float) -> Diagnostic:
             ),
         )
     curves = [c for _, c in leaves]
-    arms = arms_at(curves, f.at, near)
+    arms = finishing.arms_at(curves, f.at, near)
     place = f.at
-    corners = sorted(corners_of(curves, near), key=lambda c: math.dist(c.at, place))
+    corners = sorted(finishing.corners_of(curves, near), key=lambda c: math.dist(c.at, place))
     if len(arms) == 2:
         message = f"`{f.text}` at {at(f.at)} is no corner: the curves run on smoothly"
         label = "nothing to finish"
@@ -228,28 +220,27 @@ def _works(failure: TooLarge) -> list[Work]:
     return [failure.work] if failure.other is None else [failure.work, failure.other]
 
 
+@record(frozen=False)
 class _Fault:
     """Failures that are one fault. `own` are the works whose size is changed to find one that fits: all that
     take part if they have one size, else those of the last statement.
     """
 
-    def __init__(
-        self,
-        failures: Sequence[TooLarge],
-        works: Sequence[Work],
-        reason_of: dict[int, Finish],
-        leaves: Leaves,
-        told: SolvedStructure,
-    ) -> None:
-        self.works, self.reason_of, self.leaves, self.told = works, reason_of, leaves, told
-        self.first = failures[0]
-        self.reason = reason_of[id(self.first.work)]
-        self.spans = frozenset(reason_of[id(w)].span for f in failures for w in _works(f))
+    failures: Sequence[TooLarge]
+    works: Sequence[Work]
+    reason_of: dict[int, Finish]
+    leaves: Leaves
+    told: SolvedStructure
+
+    def __post_init__(self) -> None:
+        self.first = self.failures[0]
+        self.reason = self.reason_of[id(self.first.work)]
+        self.spans = frozenset(self.reason_of[id(w)].span for f in self.failures for w in _works(f))
         self.own = self._of(self.spans)
         self.is_equal = len({max(w.sizes) for w in self.own}) == 1
         if not self.is_equal:
             self.own = self._of({self.reason.span})
-        self.is_cusp = any(f.work.corner.is_cusp for f in failures)
+        self.is_cusp = any(f.work.corner.is_cusp for f in self.failures)
         self.most = 0.0 if self.is_cusp else self._most()
 
     def _of(self, spans: frozenset[Span] | set[Span]) -> list[Work]:
@@ -262,7 +253,7 @@ class _Fault:
     def _most(self) -> float:
         """Returns the largest size, as it is printed, with which all corners of these statements work out."""
         now = max(max(w.sizes) for w in self.own)
-        found = largest(self._fits, now)
+        found = finishing.largest(self._fits, now)
         for most in (_floor(found * (1 + 1e-9)), _floor(found)):
             if most > 0 and self._fits(most):
                 return most
@@ -270,9 +261,9 @@ class _Fault:
 
     def _fits(self, size: float) -> bool:
         own = {id(w) for w in self.own}
-        turned = [sized(w, size) if id(w) in own else w for w in self.works]
+        turned = [finishing.sized(w, size) if id(w) in own else w for w in self.works]
         mine = {id(t) for t, w in zip(turned, self.works, strict=True) if id(w) in own}
-        result = finish([curve for _, curve in self.leaves], turned)
+        result = finishing.finish([curve for _, curve in self.leaves], turned)
         return not any(id(w) in mine for failure in result.failures for w in _works(failure))
 
     def note(self) -> Diagnostic:

@@ -10,45 +10,19 @@ from functools import reduce
 
 from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.records import record
+from aidl_lang.geometry import finishing, solved
 from aidl_lang.geometry import outline_notes as notes
 from aidl_lang.geometry.boolean import clipped_each, common, united, without
-from aidl_lang.geometry.curves import (
-    LARGEST,
-    Line,
-    Piece,
-    Vec,
-    bounds,
-    ends,
-    is_finite,
-    larger_side,
-    reverse,
-    union_bounds,
-)
+from aidl_lang.geometry.curves import LARGEST, Line, Piece, Vec, extent
 from aidl_lang.geometry.drawing import Drawing
 from aidl_lang.geometry.faces import region_of
-from aidl_lang.geometry.finishing import Arm, Corner, Result, Work, arms_at, corners_of, finish, largest
+from aidl_lang.geometry.finishing import Arm, Corner, Result, Work, arms_at, corners_of
 from aidl_lang.geometry.offsets import NEAR, hull, offset, thick
-from aidl_lang.geometry.outline_notes import Misfit, merged_notes, misfits
-from aidl_lang.geometry.region import Region, area, length
-from aidl_lang.geometry.solved import (
-    Box,
-    Finish,
-    Leaves,
-    Recipe,
-    SolvedGeometry,
-    SolvedModel,
-    SolvedStructure,
-    as_geometry,
-)
+from aidl_lang.geometry.outline_notes import Misfit
+from aidl_lang.geometry.region import Region, length
+from aidl_lang.geometry.solved import Finish, SolvedGeometry, SolvedModel, SolvedStructure, as_geometry
 from aidl_lang.geometry.styles import is_filled
-from aidl_lang.geometry.tiling import (
-    MOST,
-    Lattice,
-    TooManyCopiesError,
-    tiled_areas,
-    tiled_bars,
-    tiled_strokes,
-)
+from aidl_lang.geometry.tiling import Lattice, TooManyCopiesError, tiled_areas, tiled_bars, tiled_strokes
 
 _SAME_AREA = 1e-6
 """Relative difference of areas up to which a shape of the library is what exact geometry gives."""
@@ -60,13 +34,15 @@ def complete(model: SolvedModel) -> tuple[SolvedModel, list[Diagnostic]]:
     index = {g.path: g for g in model.root.walk_geometry()}
     outliner = _Outliner(tuple(f for s in model.root.walk() for f in s.finishes), index)
     root = outliner.structure(model.root)
-    return replace(model, root=root), list(dict.fromkeys([*outliner.notes, *merged_notes(outliner.misfits)]))
+    return replace(model, root=root), list(
+        dict.fromkeys([*outliner.notes, *notes.merged_notes(outliner.misfits)])
+    )
 
 
 def _leaves(g: SolvedGeometry) -> Iterator[tuple[SolvedGeometry, Piece]]:
     """Yields the primitives of a geometry that is drawn, with their curves, if they have a place."""
     for leaf in g.leaves():
-        if (curve := leaf.curve) and is_finite(curve, LARGEST):
+        if (curve := leaf.curve) and curve.is_finite(LARGEST):
             yield leaf, curve
 
 
@@ -115,7 +91,7 @@ class _Outliner:
             s,
             geometry=geometry,
             structures=children,
-            box=Box.around(derived, children, [s.box.bounds] if s.box is not None else []),
+            box=solved.Box.around(derived, children, [s.box.bounds] if s.box is not None else []),
             finishes=tuple(self._with_corners(s.finishes)),
             finished=tuple(finished),
             inside=inside if s.clip else None,
@@ -157,17 +133,17 @@ class _Outliner:
             return _with_parts(g, tuple(map(self._drawn, g.parts)))
         exact = self._exact(g, g.recipe)
         regions = [_region([_shown(one)]) for one in (g, exact)]
-        areas = [area(r) for r in regions]
+        areas = [r.area for r in regions]
         return g if abs(areas[0] - areas[1]) <= _SAME_AREA * abs(areas[1]) else exact
 
-    def _exact(self, g: SolvedGeometry, recipe: Recipe) -> SolvedGeometry:
+    def _exact(self, g: SolvedGeometry, recipe: solved.Recipe) -> SolvedGeometry:
         if g.path not in self.made:
             curves = self._curves(g, recipe)
             parts = tuple(as_geometry(f"edges[{k}]", g, c) for k, c in enumerate(curves))
             self.made[g.path] = replace(g, parts=parts, curve=None)
         return replace(self.made[g.path], construction=g.construction)
 
-    def _curves(self, g: SolvedGeometry, recipe: Recipe) -> list[Piece]:
+    def _curves(self, g: SolvedGeometry, recipe: solved.Recipe) -> list[Piece]:
         groups = [self._operand(group) for group in recipe.operands]
         curves = [[c for one in group for _, c in _leaves(one)] for group in groups]
         match recipe.kind:
@@ -176,17 +152,19 @@ class _Outliner:
                     p for group in groups for one in group if isinstance(p := one.values.get("at"), tuple)
                 ]
                 dots = [Line(p, p) for p in points]  # type: ignore[arg-type]
-                region = hull([*curves[0], *(d for d in dots if max(map(abs, bounds(d))) <= LARGEST)])
+                region = hull([*curves[0], *(d for d in dots if max(map(abs, d.box)) <= LARGEST)])
             case "thick":
                 width, words = recipe.numbers["width"], recipe.words
                 sharp = words["joins"] == "sharp"
                 region = thick(curves[0], width, words["caps"], sharp) if width > 0 else Region()
+            case "tiled":
+                return self._tiled(g, recipe, groups, curves[0])
             case _:
                 return self._from_regions(g, recipe, groups, curves[0])
         return self._left(g, recipe, region.pieces)
 
     def _left(
-        self, g: SolvedGeometry, recipe: Recipe, pieces: Sequence[Piece], depth: float | None = None
+        self, g: SolvedGeometry, recipe: solved.Recipe, pieces: Sequence[Piece], depth: float | None = None
     ) -> list[Piece]:
         """Returns what is left of an outline, and tells if that is nothing."""
         if not pieces:
@@ -199,10 +177,8 @@ class _Outliner:
         return self._finished(shown, self.finishes)
 
     def _from_regions(
-        self, g: SolvedGeometry, recipe: Recipe, groups: list[list[SolvedGeometry]], first: list[Piece]
+        self, g: SolvedGeometry, recipe: solved.Recipe, groups: list[list[SolvedGeometry]], first: list[Piece]
     ) -> list[Piece]:
-        if recipe.kind == "tiled":
-            return self._tiled(g, recipe, groups, first)
         regions = [_region(group) for group in groups]
         if recipe.kind == "clip" and not regions[0] and regions[1]:
             clipped = clipped_each(first, regions[1])
@@ -213,7 +189,7 @@ class _Outliner:
         return self._combined(g, recipe, regions)
 
     def _tiled(
-        self, g: SolvedGeometry, recipe: Recipe, groups: list[list[SolvedGeometry]], first: list[Piece]
+        self, g: SolvedGeometry, recipe: solved.Recipe, groups: list[list[SolvedGeometry]], first: list[Piece]
     ) -> list[Piece]:
         region = _region(groups[1])
         if not region:
@@ -234,11 +210,11 @@ class _Outliner:
             else:
                 found = tiled_strokes(cell, region, lattice, whole=whole)
         except TooManyCopiesError as many:
-            self.notes.append(notes.too_many(g, recipe, many.count, MOST))
+            self.notes.append(notes.too_many(g, recipe, many.args[0]))
             return []
         return self._left(g, recipe, found)
 
-    def _combined(self, g: SolvedGeometry, recipe: Recipe, regions: Sequence[Region]) -> list[Piece]:
+    def _combined(self, g: SolvedGeometry, recipe: solved.Recipe, regions: Sequence[Region]) -> list[Piece]:
         sharp = recipe.words.get("corners") != "round"
         region = regions[0]
         match recipe.kind:
@@ -276,7 +252,7 @@ class _Outliner:
         if not self.finishes:
             return list(geometry)
         leaves = [leaf for g in geometry for leaf in _leaves(g)]
-        near = NEAR * _extent([c for _, c in leaves])
+        near = NEAR * extent([c for _, c in leaves])
         works: list[Work] = []
         reasons: list[Finish] = []
         for f, corner in (*self._own(leaves, finishes, near, told), *self._inherited(leaves, near)):
@@ -289,10 +265,10 @@ class _Outliner:
             elif told is not None and f in finishes and f.span != reasons[earlier].span:
                 self.notes.append(notes.twice(f, reasons[earlier], corner, told))
         works, reasons = self._fitted(leaves, works, reasons, told)
-        result = finish([c for _, c in leaves], works)
+        result = finishing.finish([c for _, c in leaves], works)
         if told is not None:
             if result.failures:
-                self.misfits += misfits(result, works, reasons, leaves, told)
+                self.misfits += notes.misfits(result, works, reasons, leaves, told)
             for made in result.finished:
                 reason = reasons[works.index(made.work)]
                 self.carried_out.setdefault(reason, []).append(made.work.corner.at)
@@ -300,15 +276,13 @@ class _Outliner:
         return _rebuilt(geometry, leaves, result) if result.finished else list(geometry)
 
     def _fitted(
-        self, leaves: Leaves, works: list[Work], reasons: list[Finish], told: SolvedStructure | None
+        self, leaves: solved.Leaves, works: list[Work], reasons: list[Finish], told: SolvedStructure | None
     ) -> tuple[list[Work], list[Finish]]:
         """Returns the works with the sizes of those as large as fits, without those that do not fit."""
         if all(f.sizes for f in reasons):
             return works, reasons
-        from aidl_lang.geometry.finishing import fitted
-
         curves = [c for _, c in leaves]
-        works = fitted(curves, works, [0 if f.sizes else f.run for f in reasons], _extent(curves))
+        works = finishing.fitted(curves, works, [0 if f.sizes else f.run for f in reasons], extent(curves))
         fit = [(w, f) for w, f in zip(works, reasons, strict=True) if w.sizes[0] > 0]
         without = [(w, f) for w, f in zip(works, reasons, strict=True) if not w.sizes[0] > 0]
         if told is not None and without:
@@ -316,7 +290,7 @@ class _Outliner:
         return [w for w, _ in fit], [f for _, f in fit]
 
     def _own(
-        self, leaves: Leaves, finishes: Sequence[Finish], near: float, told: SolvedStructure | None
+        self, leaves: solved.Leaves, finishes: Sequence[Finish], near: float, told: SolvedStructure | None
     ) -> Iterator[tuple[Finish, Corner]]:
         for f in finishes:
             if f.of and not any(_is_of(g.path, f.of) for g, _ in leaves):
@@ -327,7 +301,7 @@ class _Outliner:
             if not f.sizes or max(f.sizes) > 0:
                 yield from ((f, corner) for corner in corners)
 
-    def _inherited(self, leaves: Leaves, near: float) -> Iterator[tuple[Finish, Corner]]:
+    def _inherited(self, leaves: solved.Leaves, near: float) -> Iterator[tuple[Finish, Corner]]:
         """Yields a copy's finishes from its source: of the same corners, with sizes in proportion."""
         sources, curves = [(self._source(g), c) for g, c in leaves], [c for _, c in leaves]
         for _ in self.index:  # copies of copies: no chain is longer than that
@@ -342,10 +316,10 @@ class _Outliner:
                     for corner in _corners(f, theirs, near / share):
                         arms = ((numbers[a.number], a.first) for a in corner.arms)
                         one, other = (
-                            Arm(curves[k] if first else reverse(curves[k]), k, first) for k, first in arms
+                            Arm(curves[k] if first else curves[k].reversed(), k, first) for k, first in arms
                         )
                         made = replace(f, sizes=tuple(share * s for s in f.sizes))
-                        yield made, Corner(ends(one.curve)[0], (one, other))
+                        yield made, Corner(one.curve.ends[0], (one, other))
             sources = [(self._source(g) if g else None, c) for g, c in sources]
 
     def _source(self, g: SolvedGeometry) -> SolvedGeometry | None:
@@ -358,7 +332,7 @@ def _is_of(path: str, of: Iterable[str]) -> bool:
     return any(path == p or path.startswith((f"{p}.", f"{p}[")) for p in of)
 
 
-def _corners(f: Finish, leaves: Leaves, near: float) -> list[Corner]:
+def _corners(f: Finish, leaves: solved.Leaves, near: float) -> list[Corner]:
     own = [number for number, (g, _) in enumerate(leaves) if _is_of(g.path, f.of)]
     if f.at is None:
         found = corners_of([leaves[n][1] for n in own], near)
@@ -376,7 +350,9 @@ def _renumbered(corner: Corner, numbers: Sequence[int]) -> Corner:
     return Corner(corner.at, (a, b))
 
 
-def _rebuilt(geometry: Sequence[SolvedGeometry], leaves: Leaves, result: Result) -> list[SolvedGeometry]:
+def _rebuilt(
+    geometry: Sequence[SolvedGeometry], leaves: solved.Leaves, result: Result
+) -> list[SolvedGeometry]:
     """Returns the geometry with its new curves, which belong to what both their neighbours belong to."""
     changed = {g.path: c for (g, old), c in zip(leaves, result.curves, strict=True) if c is not old}
     added: dict[str, list[SolvedGeometry]] = {}
@@ -431,13 +407,9 @@ def _region(geometry: Sequence[SolvedGeometry]) -> Region:
     return region_of((g, leaves) for g, leaves in found if leaves)[0]
 
 
-def _extent(curves: Sequence[Piece]) -> float:
-    return larger_side(union_bounds([bounds(c) for c in curves])) or 1.0
-
-
 def _deepest(region: Region, too_deep: float) -> float:
     """Returns how far an outline can move inwards before nothing is left, to about seven digits."""
-    return largest(lambda depth: bool(offset(region, -depth)), too_deep, _HALVINGS)
+    return finishing.largest(lambda depth: bool(offset(region, -depth)), too_deep, _HALVINGS)
 
 
 # --- Drawings that are clipped to the material of a solid, once that is known.

@@ -20,7 +20,6 @@ from aidl_lang.geometry.curves import (
     Floats,
     Piece,
     are_near,
-    bounds,
     inward,
     larger_side,
     union_bounds,
@@ -28,7 +27,7 @@ from aidl_lang.geometry.curves import (
 from aidl_lang.geometry.drawing import SLIT, Body, Drawing, Seam, Stroke
 from aidl_lang.geometry.legibility import Holders, owner
 from aidl_lang.geometry.notes import united_notes
-from aidl_lang.geometry.region import COARSE, Region, face_polygons, length, region_bounds
+from aidl_lang.geometry.region import COARSE, Region, length
 from aidl_lang.geometry.solved import Frame, SolvedStructure
 
 # --- The parts that drawings are engraved on, for drawings whose parts are taken from one another.
@@ -75,7 +74,7 @@ def _cut_off(stroke: Stroke, region: Region) -> tuple[Stroke | None, Stroke | No
 
 def _by_cover(stroke: Stroke, bodies: Sequence[Body]) -> list[Body]:
     """Returns the bodies under a stroke, first the one that has most of it."""
-    box = union_bounds([bounds(piece) for piece in stroke.pieces])
+    box = union_bounds([piece.box for piece in stroke.pieces])
     near = [body for body in reversed(bodies) if are_near(box, body.box)]
     if len(near) < 2:
         return near
@@ -155,13 +154,12 @@ class Part:
             )
             for s in self.strokes
         )
-        box = region_bounds(region)
         return Part(
-            replace(self.body, region=region, box=box),
+            replace(self.body, region=region),
             strokes,
             tuple(replace(seam, pieces=by.pieces(seam.pieces)) for seam in self.seams),
             {path: below.mapped(by.piece) for path, below in self.regions.items()},
-            union_bounds([box, *(bounds(piece) for s in strokes for piece in s.pieces)]),
+            union_bounds([region.box, *(piece.box for s in strokes for piece in s.pieces)]),
         )
 
 
@@ -196,9 +194,9 @@ def _parts(drawing: Drawing, on: dict[str, list[Stroke]]) -> Iterator[Part]:
         seams[seam.body].append(seam)
     for body in drawing.bodies:
         strokes = tuple(on.get(body.path, ()))
-        box = union_bounds([body.box, *(bounds(piece) for s in strokes for piece in s.pieces)])
+        box = union_bounds([body.box, *(piece.box for s in strokes for piece in s.pieces)])
         regions = below[body.path]
-        regions |= {p: r for p, r in shared.items() if are_near(region_bounds(r), body.box)}
+        regions |= {p: r for p, r in shared.items() if are_near(r.box, body.box)}
         yield Part(body, strokes, tuple(seams[body.path]), regions, box)
 
 
@@ -236,20 +234,20 @@ def gathered(things: Iterable[T], key: Callable[[T], Hashable]) -> list[list[T]]
 
 def shape_of(body: Body) -> Hashable:
     """Returns a key that bodies share which are moved copies of each other, and of one stock."""
-    box, style = region_bounds(body.region), body.style
+    box, style = body.region.box, body.style
     places = _places(body.region.pieces, box)
     return style.material, style.thickness, style.quantity, round(larger_side(box), 6), places
 
 
 def _engraving(part: Part) -> Hashable:
-    box = region_bounds(part.body.region)
+    box = part.body.region.box
     return tuple(sorted((s.style.layer or "", _places(s.pieces, box)) for s in part.strokes))
 
 
 def _places(pieces: Iterable[Piece], around: Bounds) -> tuple[tuple[int, ...], ...]:
     """Returns the boxes of pieces in one, in steps of it so small that equal ones are the same."""
     step, origin = _ALIKE * larger_side(around), around[:2] * 2
-    boxes = (zip(bounds(p), origin, strict=True) for p in pieces)
+    boxes = (zip(p.box, origin, strict=True) for p in pieces)
     return tuple(sorted(tuple(round((v - o) / step + _OFF_BEAT) for v, o in box) for box in boxes))
 
 
@@ -257,7 +255,7 @@ def upright_turn(part: Part) -> float:
     """Returns the turn, degrees, after which the box around a part is smallest; 0 if no turn saves area."""
     from scipy.spatial import ConvexHull
 
-    outer = np.concatenate([face_polygons(face, COARSE)[0] for face in part.body.region.faces])
+    outer = np.concatenate([face.polygons(COARSE)[0] for face in part.body.region.faces])
     corners = outer[ConvexHull(outer).vertices]
     ways = np.roll(corners, -1, axis=0) - corners
     angles = np.unique(np.round(np.arctan2(ways[:, 1], ways[:, 0]) % (math.pi / 2), 12))
@@ -274,9 +272,7 @@ def upright_turn(part: Part) -> float:
 def smallest_size(part: Part) -> Size:
     """Returns the sides, mm, of the least rectangle around a part, the longer first if turned for it."""
     turn = upright_turn(part)
-    left, bottom, right, top = (
-        region_bounds(part.body.region.mapped(Motion(turn).piece)) if turn else part.body.box
-    )
+    left, bottom, right, top = part.body.region.mapped(Motion(turn).piece).box if turn else part.body.box
     width, height = right - left, top - bottom
     return (max(width, height), min(width, height)) if turn else (width, height)
 

@@ -22,30 +22,13 @@ from aidl_lang.common.diagnostics import Diagnostic, blaming
 from aidl_lang.common.records import record
 from aidl_lang.common.running import Later, Stopwatch, checkpoint, working
 from aidl_lang.common.source import Span
-from aidl_lang.geometry import curves
+from aidl_lang.geometry import curves, solved
 from aidl_lang.geometry.boolean import stencilled, united_character
-from aidl_lang.geometry.curves import LARGEST, Bounds, Curve, Vec, is_finite
+from aidl_lang.geometry.curves import LARGEST, Bounds, Curve, Vec
 from aidl_lang.geometry.drawing import Drawing, Findings, draw
 from aidl_lang.geometry.faces import edge_of, parts_of
 from aidl_lang.geometry.notes import unusable_note
-from aidl_lang.geometry.solved import (
-    Box,
-    Change,
-    ConstraintReport,
-    Dimension,
-    Frame,
-    Mobility,
-    Motion,
-    Reading,
-    Scalar,
-    SolvedGeometry,
-    SolvedModel,
-    SolvedStructure,
-    Values,
-    described,
-)
-from aidl_lang.geometry.solved import Finish as SolvedFinish
-from aidl_lang.geometry.solved import Recipe as SolvedRecipe
+from aidl_lang.geometry.solved import Scalar, SolvedGeometry, SolvedModel, SolvedStructure, Values, described
 from aidl_lang.solver.problem import Solution
 from aidl_lang.syntax import ast
 
@@ -84,11 +67,11 @@ def pictured(
     return model, evaluator, drawing, Findings(errors, everything)
 
 
-def _sizes(built: Model, evaluator: Evaluator, solved: SolvedModel) -> tuple[Dimension, ...]:
+def _sizes(built: Model, evaluator: Evaluator, model: SolvedModel) -> tuple[solved.Dimension, ...]:
     from aidl_lang.geometry.dimensions import sizes
 
     with working:
-        return sizes(built, solved, evaluator)
+        return sizes(built, model, evaluator)
 
 
 def _most_drawn(model: SolvedModel) -> Span | None:
@@ -115,15 +98,17 @@ def read_out(
     changed = tuple(_changes(lowered, solution))
     reports = tuple(_reports(model, lowered, solution))
     root = _Reader(model, evaluator).structure(model.root)
-    readings = tuple(dict.fromkeys(Reading(span, text) for span, text in model.readings))
+    readings = tuple(dict.fromkeys(solved.Reading(span, text) for span, text in model.readings))
     mobility = Later(partial(_mobility, model, lowered, solution, freedom))
     return SolvedModel(solution.status.value, root, reports, changed, readings, mobility), evaluator
 
 
-def _mobility(model: Model, lowered: Lowered, solution: Solution, freedom: Callable[[], Freedom]) -> Mobility:
+def _mobility(
+    model: Model, lowered: Lowered, solution: Solution, freedom: Callable[[], Freedom]
+) -> solved.Mobility:
     found = freedom()
     each = zip(model.root.walk(), found.group_degrees, found.states, strict=True)
-    return Mobility(
+    return solved.Mobility(
         found.degrees,
         tuple(lowered.unknowns[i].path for i in found.free),
         tuple(_floating(lowered, found)),
@@ -144,7 +129,9 @@ def _literal(model: Model, finish: Finish) -> ast.Number | None:
     return node if isinstance(node, ast.Number) and finish.span.overlaps(node.span) else None
 
 
-def _motions(model: Model, lowered: Lowered, solution: Solution, freedom: Freedom) -> tuple[Motion, ...]:
+def _motions(
+    model: Model, lowered: Lowered, solution: Solution, freedom: Freedom
+) -> tuple[solved.Motion, ...]:
     """Returns the motions that are left, by code that is loaded when it is needed."""
     from aidl_lang.geometry.freedom import motions
 
@@ -162,18 +149,18 @@ def _floating(lowered: Lowered, freedom: Freedom) -> Iterator[str]:
             yield lowered.groups[group]
 
 
-def _changes(lowered: Lowered, solution: Solution) -> Iterator[Change]:
+def _changes(lowered: Lowered, solution: Solution) -> Iterator[solved.Change]:
     for index in solution.changed:
         unknown = lowered.unknowns[index]
-        solved, span = float(solution.values[index]), unknown.holder.span
-        yield Change(unknown.path, unknown.guess, solved, span, unknown.description, unknown.is_size)
+        value, span = float(solution.values[index]), unknown.holder.span
+        yield solved.Change(unknown.path, unknown.guess, value, span, unknown.description, unknown.is_size)
 
 
-def _reports(model: Model, lowered: Lowered, solution: Solution) -> Iterator[ConstraintReport]:
+def _reports(model: Model, lowered: Lowered, solution: Solution) -> Iterator[solved.ConstraintReport]:
     number = {stated: index for index, stated in enumerate(lowered.stated)}
     for stated in model.constraints:
         if (index := number.get(stated)) is not None:
-            yield ConstraintReport(
+            yield solved.ConstraintReport(
                 stated.holder.path,
                 f"{stated.text} [{stated.label}]" if stated.label else stated.text,
                 stated.span,
@@ -204,7 +191,7 @@ class _Reader:
             path=s.path,
             kind=s.kind,
             orientation=self._orientation(s),
-            frame=Frame(
+            frame=solved.Frame(
                 self.evaluate(frame.x), self.evaluate(frame.y), self.evaluate(frame.rotation), frame.mirrored
             ),
             attributes=self._attributes(s),
@@ -275,14 +262,14 @@ class _Reader:
 
     def _box(
         self, s: Structure, geometry: Iterable[SolvedGeometry], children: Iterable[SolvedStructure]
-    ) -> Box | None:
+    ) -> solved.Box | None:
         corners: list[Bounds] = []
         if s.plan:
             left, bottom, width, height = s.plan
             for corner in ((left, bottom), (ex.add(left, width), ex.add(bottom, height))):
                 x, y = self.place(self.evaluate(corner[0]), self.evaluate(corner[1]), s)
                 corners.append((x, y, x, y))
-        return Box.around((curve for g in geometry for curve in g.curves()), children, corners)
+        return solved.Box.around((curve for g in geometry for curve in g.curves()), children, corners)
 
     # --- Geometry ------------------------------------------------------------------------------
 
@@ -300,7 +287,7 @@ class _Reader:
         if (of := g.recipe) is not None:
             operands = tuple(tuple(map(self.geometry, group)) for group in of.operands)
             numbers = {name: self._number(value) for name, value in of.numbers.items()}
-            recipe = SolvedRecipe(of.kind, operands, numbers, of.words)
+            recipe = solved.Recipe(of.kind, operands, numbers, of.words)
         is_plain = not g.is_compound and not g.is_drawn_later and g.type != "point"
         curve = self._curve(g) if is_plain else None
         if is_plain and curve is None:
@@ -317,19 +304,19 @@ class _Reader:
         values: Values,
         parts: tuple[SolvedGeometry, ...],
         curve: Curve | None = None,
-        recipe: SolvedRecipe | None = None,
+        recipe: solved.Recipe | None = None,
     ) -> SolvedGeometry:
         source = g.source.path if g.source is not None else None
         looks = self._looks(g) | self._attributes(g)
         known = g.type, values, curve, parts, g.construction, g.span, recipe, source, looks
         return SolvedGeometry(g.name or g.type, g.path, *known)
 
-    def _finish(self, s: Structure, finish: Finish) -> SolvedFinish:
+    def _finish(self, s: Structure, finish: Finish) -> solved.Finish:
         at = self._at(finish.at, s) if finish.at is not None else None
         of = tuple(g.path for g in finish.of)
         sizes = tuple(map(self._number, finish.sizes))
         literal = Later(partial(_literal, self.model, finish))
-        return SolvedFinish(
+        return solved.Finish(
             finish.kind, of, at, sizes, finish.text, finish.span, run=finish.run, literal=literal
         )
 
@@ -472,7 +459,7 @@ def _is_sound(structure: SolvedStructure) -> bool:
 
 def _has_place(geometry: SolvedGeometry) -> bool:
     return (
-        (is_finite(geometry.curve, LARGEST) if geometry.curve else _is_within(geometry.values.values()))
+        (geometry.curve.is_finite(LARGEST) if geometry.curve else _is_within(geometry.values.values()))
         and all(map(_has_place, geometry.parts))
         and (geometry.recipe is None or _is_possible(geometry))
     )
@@ -500,9 +487,9 @@ def _cleaned(s: SolvedStructure, notes: list[Diagnostic]) -> SolvedStructure:
     children = tuple(_cleaned(child, notes) for child in s.structures)
     frame, box = s.frame, s.box
     if not _is_within((frame.x, frame.y, frame.rotation)):
-        frame = Frame(0.0, 0.0, 0.0, frame.mirrored)
+        frame = solved.Frame(0.0, 0.0, 0.0, frame.mirrored)
     if box is None or not s.is_empty:
-        box = Box.around((c for g in geometry for c in g.curves() if is_finite(c)), children)
+        box = solved.Box.around((c for g in geometry for c in g.curves() if c.is_finite()), children)
     elif not _is_within(box.bounds):
         box = None
     return replace(s, geometry=geometry, structures=children, frame=frame, box=box)

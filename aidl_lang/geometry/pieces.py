@@ -1,4 +1,5 @@
-"""Warns of solids that fall into pieces which nothing joins, and of pieces that a hole cuts free all around.
+"""Warns of bodies that touch no other, of solids that fall into pieces which nothing joins, and of pieces
+that a hole cuts free all around.
 
 Where no hole is between them, pieces that are alike are a pattern and meant, as are letters, and what a
 single geometry consists of.
@@ -15,24 +16,12 @@ from aidl_lang.common.prose import named, rough
 from aidl_lang.common.records import record
 from aidl_lang.common.source import Span
 from aidl_lang.geometry.bodies import Bodies, Mass
-from aidl_lang.geometry.boolean import UNNOTICED, Solid, lie_within, nearest_region
-from aidl_lang.geometry.curves import Bounds
+from aidl_lang.geometry.boolean import UNNOTICED, Contacts, Solid, lie_within, nearest_region
 from aidl_lang.geometry.faces import OwnFace, union_of
-from aidl_lang.geometry.nearness import near_pairs
+from aidl_lang.geometry.intersect import near_pairs
 from aidl_lang.geometry.network import Joined
-from aidl_lang.geometry.notes import marked_detached
-from aidl_lang.geometry.region import Region, region_bounds
-from aidl_lang.geometry.sections import (
-    Section,
-    boxes_meet,
-    covers,
-    difference,
-    holes_of,
-    intersection,
-    is_nothing,
-    trace_all,
-    union,
-)
+from aidl_lang.geometry.region import Region
+from aidl_lang.geometry.sections import Section, trace, trace_all, union
 from aidl_lang.geometry.solved import SolvedStructure
 
 _RING = 3
@@ -45,17 +34,58 @@ LETTERING = "text"
 """The type of letters."""
 
 
+def marked_detached(root: SolvedStructure) -> set[str]:
+    """Returns the paths of structures that are `@detached`, or lie in one that is."""
+    return {
+        below.path
+        for s in root.walk()
+        if "detached" in s.attributes and s.attributes["detached"] != (False,)
+        for below in s.walk()
+    }
+
+
+def detached_notes(root: SolvedStructure, paths: Sequence[str], contacts: Contacts) -> list[Diagnostic]:
+    """Returns a warning for each statement with bodies that touch and overlap none of the others."""
+    free = marked_detached(root)
+    if sum(path not in free for path in paths) < 2:
+        return []  # there is nothing that a part could touch
+    held = {path for pair in contacts.near() for path in pair}
+    structures = {s.path: s for s in root.walk()}
+    lonely: dict[object, list[SolvedStructure]] = {}
+    for path in paths:
+        if path not in held and path not in free:
+            lonely.setdefault(structures[path].span or path, []).append(structures[path])
+    return [_detached(alike, contacts.nearest(alike[0].path)) for alike in lonely.values()]
+
+
+def _detached(structures: Sequence[SolvedStructure], nearest: tuple[float, str]) -> Diagnostic:
+    """Returns the warning about the bodies of one statement; `nearest` is what is nearest to the first."""
+    structure, is_one = structures[0], len(structures) == 1
+    to = "" if is_one else f" to `{structure.path}`"
+    message = (
+        f"{named(s.path for s in structures)} {'touches' if is_one else 'touch'} no other part; "
+        f"the nearest{to}, `{nearest[1]}`, is {rough(nearest[0])} mm away"
+    )
+    hints = (
+        "to join them, let their borders meet: `gap: 0`, `touching(…)` or `on_top_of(…)`",
+        "if that is meant, say so: `@detached` before its definition",
+    )
+    span, fix = structure.span, None
+    is_plain = span and re.match(r"(@|[a-z]+\s+\w+\s*(\[|\(|\{|at\b|rotated\b))", span.text)
+    if span and is_plain and "detached" not in structure.attributes:
+        fix = Fix("say that it is meant", (Edit(Span(span.source, span.start, span.start), "@detached "),))
+    label = "stands by itself" if is_one else "each stands by itself"
+    return Diagnostic("W0705", message, span, label, hints=hints, fix=fix)
+
+
 @record()
 class _Piece:
     section: Section
     region: Region
-    box: Bounds
     faces: tuple[OwnFace, ...]
 
     def meets(self, section: Section, region: Region) -> bool:
-        if boxes_meet(self.section, section) and not is_nothing(intersection(self.section, section)):
-            return True
-        return lie_within(self.region, region, UNNOTICED)
+        return self.section.overlaps(section) or lie_within(self.region, region, UNNOTICED)
 
 
 def piece_notes(
@@ -98,12 +128,12 @@ def _pieces(walk: Bodies, mass: Mass) -> list[_Piece]:
         return []  # one, or all alike
     of: list[list[OwnFace]] = [[] for _ in sections]
     count = len(sections)
-    for i, j in sorted(near_pairs([s.bounds() for s in (*sections, *(f.section for f in faces))], 0.0)):
-        if i < count <= j and not is_nothing(intersection(sections[i], faces[j - count].section)):
+    for i, j in sorted(near_pairs([s.box for s in (*sections, *(f.section for f in faces))], 0.0)):
+        if i < count <= j and sections[i].overlaps(faces[j - count].section):
             of[i].append(faces[j - count])
     traced = trace_all(walk.network, sections)
     return [
-        _Piece(section, outline.region, region_bounds(outline.region), tuple(own))
+        _Piece(section, outline.region, tuple(own))
         for section, outline, own in zip(sections, traced, of, strict=True)
         if own  # else it is a hole beside the material
     ]
@@ -118,7 +148,7 @@ def _material(structure: SolvedStructure) -> Iterator[SolvedStructure]:
 
 def _area(section: Section) -> str:
     """Returns an area with six digits, so that pieces of one size compare equal."""
-    return f"{section.area():.6g}"
+    return f"{section.area:.6g}"
 
 
 def _groups(
@@ -134,7 +164,7 @@ def _groups(
         for number, piece in enumerate(pieces):
             if piece.meets(other.section, other.region):
                 joined.join(number, other.path)
-    for i, j in near_pairs([piece.box for piece in pieces], UNNOTICED):
+    for i, j in near_pairs([piece.region.box for piece in pieces], UNNOTICED):
         if lie_within(pieces[i].region, pieces[j].region, UNNOTICED):
             joined.join(i, j)
     of: dict[int, int] = {}
@@ -142,7 +172,7 @@ def _groups(
         for face in piece.faces:
             joined.join(number, of.setdefault(id(face), number))
     groups = [[pieces[k] for k in group] for group in joined.groups(range(len(pieces)))]
-    return sorted(groups, key=lambda group: -sum(p.section.area() for p in group))
+    return sorted(groups, key=lambda group: -sum(p.section.area for p in group))
 
 
 def _notes(solid: SolvedStructure, groups: Sequence[Sequence[_Piece]]) -> Iterator[Diagnostic]:
@@ -196,7 +226,7 @@ def _cut_free(
         return
     loose: dict[str, tuple[SolvedStructure, list[Section], dict[str, None]]] = {}
     for piece, gap in _enclosed(mass.section.decompose()):
-        if not is_nothing(intersection(piece, islands)):
+        if piece.overlaps(islands):
             continue  # put there on purpose
         if _was_joined(walk, mass, piece, gap) and not _touches(walk, piece, others):
             for hole, around in _cutting(walk, holes, gap, piece):
@@ -216,11 +246,11 @@ def _severed(
     holes = [hole for hole in holes if hole.path in walk.sections]
     if not holes:
         return
-    pieces = sorted(mass.section.decompose(), key=lambda piece: -piece.area())
+    pieces = sorted(mass.section.decompose(), key=lambda piece: -piece.area)
     enclosed = {id(piece) for piece, _ in _enclosed(pieces)}
-    beside = [p for p in pieces if id(p) not in enclosed and is_nothing(intersection(p, islands))]
+    beside = [p for p in pieces if id(p) not in enclosed and not p.overlaps(islands)]
     for whole in union_of(_faces(walk, _material(mass.structure))).decompose():
-        parts = [piece for piece in beside if covers(whole, piece)]
+        parts = [piece for piece in beside if whole.covers(piece)]
         apart = [piece for piece in parts[1:] if not _touches(walk, piece, others)]
         # Those with which filled again pieces would hang together.
         filled = ((h, union([walk.sections[h.path], *parts])) for h in holes if apart)
@@ -232,7 +262,7 @@ def _severed(
 def _cut_through(
     walk: Bodies, solid: SolvedStructure, holes: Sequence[SolvedStructure], pieces: Sequence[Section]
 ) -> Diagnostic:
-    boxes = [region_bounds(traced.region) for traced in trace_all(walk.network, pieces)]
+    boxes = [traced.region.box for traced in trace_all(walk.network, pieces)]
     sizes = [f"{rough(b[2] - b[0])} × {rough(b[3] - b[1])} mm" for b in boxes[:_MOST]]
     more = f" and {len(boxes) - _MOST} more" if len(boxes) > _MOST else ""
     first = holes[0]
@@ -285,12 +315,12 @@ def _enclosed(sections: Sequence[Section]) -> Iterator[tuple[Section, Section]]:
     """Yields the pieces that lie in openings of others, each with the smallest such opening."""
     if len(sections) < 2:
         return
-    openings = [hole for s in sections if s.num_contour() > 1 for hole in holes_of(s)]
+    openings = [hole for s in sections if s.num_contour() > 1 for hole in s.holes()]
     count, around = len(sections), dict[int, Section]()
-    for i, j in near_pairs([s.bounds() for s in (*sections, *openings)], 0.0):
-        if not i < count <= j or not covers(opening := openings[j - count], sections[i]):
+    for i, j in near_pairs([s.box for s in (*sections, *openings)], 0.0):
+        if not i < count <= j or not (opening := openings[j - count]).covers(sections[i]):
             continue
-        if i not in around or opening.area() < around[i].area():
+        if i not in around or opening.area < around[i].area:
             around[i] = opening
     yield from ((sections[i], around[i]) for i in sorted(around))
 
@@ -298,15 +328,14 @@ def _enclosed(sections: Sequence[Section]) -> Iterator[tuple[Section, Section]]:
 def _was_joined(walk: Bodies, mass: Mass, piece: Section, opening: Section) -> bool:
     """Tells whether a piece was part of the material around the opening before the cuts."""
     faces = (face.section for face in _faces(walk, _material(mass.structure)))
-    near = union([f for f in faces if boxes_meet(f, opening)])
-    return any(covers(whole, opening) and covers(whole, piece) for whole in near.decompose())
+    near = union([f for f in faces if f.may_meet(opening)])
+    return any(whole.covers(opening) and whole.covers(piece) for whole in near.decompose())
 
 
 def _touches(walk: Bodies, piece: Section, others: Sequence[Solid]) -> bool:
     if not others:
         return False
-    region = trace_all(walk.network, [piece])[0].region
-    known = _Piece(piece, region, region_bounds(region), ())
+    known = _Piece(piece, trace(walk.network, piece).region, ())
     return any(known.meets(other.section, other.region) for other in others)
 
 
@@ -314,10 +343,9 @@ def _cutting(
     walk: Bodies, holes: Iterable[SolvedStructure], opening: Section, piece: Section
 ) -> Iterator[tuple[SolvedStructure, dict[str, None]]]:
     """Yields the holes that took what was around a piece, and the names of their geometries."""
-    between = difference(opening, piece)
+    between = opening - piece
     for hole in holes:
-        near = [f for f in walk.faces.get(hole.path, ()) if boxes_meet(f.section, between)]
-        faces = [f for f in near if not is_nothing(intersection(f.section, between))]
+        faces = [f for f in walk.faces.get(hole.path, ()) if f.section.overlaps(between)]
         if faces:
             yield hole, {g.name: None for f in faces for g in f.geometries}
 
@@ -330,8 +358,8 @@ def _fallen(
     around: Iterable[str],
 ) -> Diagnostic:
     """Returns the warning on pieces that a hole cuts free; `around`: the names of its geometries there."""
-    count, largest = len(pieces), max(pieces, key=lambda piece: piece.area())
-    left, bottom, right, top = region_bounds(trace_all(walk.network, [largest])[0].region)
+    count, largest = len(pieces), max(pieces, key=lambda piece: piece.area)
+    left, bottom, right, top = trace(walk.network, largest).region.box
     size = f"{rough(right - left)} × {rough(top - bottom)} mm"
     cuts = [g for f in walk.faces[hole.path] for g in f.geometries]
     fall = "a piece falls" if count == 1 else f"{count} pieces fall"

@@ -13,28 +13,7 @@ import numpy as np
 from aidl_lang.building.curves import gauss
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
-from aidl_lang.geometry.curves import (
-    TAU,
-    Arc,
-    Bezier,
-    Bounds,
-    Circle,
-    Ellipse,
-    Floats,
-    Line,
-    Piece,
-    Vec,
-    all_bounds,
-    bounds,
-    derivative,
-    ends,
-    point,
-    points,
-    round_range,
-    union_bounds,
-)
-
-# --- Regions of the plane, bounded by exact curves.
+from aidl_lang.geometry.curves import Arc, Bezier, Bounds, Circle, Floats, Line, Piece, Vec, union_bounds
 
 
 @record(slots=True)
@@ -55,7 +34,39 @@ class Loop:
     @property
     def is_whole(self) -> bool:
         """True if the loop is a single closed curve without ends."""
-        return len(self.pieces) == 1 and isinstance(self.pieces[0], Circle | Ellipse)
+        return len(self.pieces) == 1 and self.pieces[0].is_closed
+
+    @property
+    def start(self) -> Vec:
+        """Where it begins, by which loops and faces are in order."""
+        return self.pieces[0].ends[0]
+
+    @property
+    def box(self) -> Bounds:
+        return union_bounds([piece.box for piece in self.pieces])
+
+    @property
+    def area(self) -> float:
+        """The area, positive counter-clockwise."""
+        at = self.start
+        area = sum(_bezier_area(p, at) if isinstance(p, Bezier) else _moments(p, at)[0] for p in self.pieces)
+        return -area if self.reversed else area
+
+    @property
+    def moments(self) -> Moments:
+        """The moments about its start: far from the origin nothing cancels there."""
+        a = mx = my = 0.0
+        for da, dx, dy in (_moments(piece, self.start) for piece in self.pieces):
+            a, mx, my = a + da, mx + dx, my + dy
+        sign = -1 if self.reversed else 1
+        return sign * a, sign * mx, sign * my
+
+    def polygon(self, tolerance: float) -> Polygon:
+        """Returns its polygon in its own direction (`tolerance` in mm, above 0)."""
+        if not tolerance > 0:
+            raise ValueError(f"the tolerance must be above 0, not {tolerance}")
+        polygon = np.concatenate([_from_start(piece, tolerance) for piece in self.pieces])
+        return polygon[::-1] if self.reversed else polygon
 
 
 @record(slots=True)
@@ -71,6 +82,10 @@ class Face:
 
     def mapped(self, moved: Callable[[Piece], Piece]) -> Face:
         return Face(self.outer.mapped(moved), tuple(hole.mapped(moved) for hole in self.holes))
+
+    def polygons(self, tolerance: float) -> list[Polygon]:
+        """Returns the outer polygon, counter-clockwise, then those of the holes, clockwise."""
+        return [_faithful(loop, tolerance) for loop in self.loops]
 
 
 @record()
@@ -97,7 +112,23 @@ class Region:
     @cached_property
     def boxes(self) -> Floats:
         """The box of each piece, a row each."""
-        return np.array([bounds(piece) for piece in self.pieces]).reshape(-1, 4)
+        return np.array([piece.box for piece in self.pieces]).reshape(-1, 4)
+
+    @cached_property
+    def box(self) -> Bounds:
+        return union_bounds([face.outer.box for face in self.faces])
+
+    @property
+    def area(self) -> float:
+        return sum(loop.area for loop in self.loops)
+
+    @property
+    def perimeter(self) -> float:
+        return sum(map(length, self.pieces))
+
+    def polygons(self, tolerance: float) -> list[Polygon]:
+        """Returns one polygon for each of its loops: outer ones counter-clockwise, holes clockwise."""
+        return [polygon for face in self.faces for polygon in face.polygons(tolerance)]
 
     def mapped(self, moved: Callable[[Piece], Piece]) -> Region:
         return Region(tuple(face.mapped(moved) for face in self.faces))
@@ -132,54 +163,24 @@ def measure(region: Region) -> Measures:
     """Returns all measures of a region."""
     area = mx = my = perimeter = 0.0
     for loop in region.loops:
-        (x0, y0), (a, x, y) = moments_about_start(loop)
+        (x0, y0), (a, x, y) = loop.start, loop.moments
         area, mx, my = area + a, mx + (x + a * x0), my + (y + a * y0)
         perimeter += sum(length(piece) for piece in loop.pieces)
     centroid = (mx / area, my / area) if area else (0.0, 0.0)
-    return Measures(area, perimeter, centroid, region_bounds(region), len(region.loops))
-
-
-def region_bounds(region: Region) -> Bounds:
-    return union_bounds(all_bounds(piece for face in region.faces for piece in face.outer.pieces))
-
-
-def area(region: Region) -> float:
-    return sum(loop_area(loop) for loop in region.loops)
-
-
-def perimeter(region: Region) -> float:
-    return sum(length(piece) for loop in region.loops for piece in loop.pieces)
-
-
-def loop_area(loop: Loop) -> float:
-    """Returns the area of a loop, positive counter-clockwise."""
-    start = ends(loop.pieces[0])[0]
-    pieces = loop.pieces
-    area = sum(_bezier_area(p, start) if isinstance(p, Bezier) else _moments(p, start)[0] for p in pieces)
-    return -area if loop.reversed else area
-
-
-def moments_about_start(loop: Loop) -> tuple[Vec, Moments]:
-    """Returns the start of a loop and its moments about it: far from the origin nothing cancels there."""
-    start = ends(loop.pieces[0])[0]
-    a = mx = my = 0.0
-    for da, dx, dy in (_moments(piece, start) for piece in loop.pieces):
-        a, mx, my = a + da, mx + dx, my + dy
-    sign = -1 if loop.reversed else 1
-    return start, (sign * a, sign * mx, sign * my)
+    return Measures(area, perimeter, centroid, region.box, len(region.loops))
 
 
 def _moments(piece: Piece, origin: Vec) -> Moments:
     """Returns the moments of the triangle fan from the origin to the piece."""
     if isinstance(piece, Bezier):
         return _bezier_moments(piece, origin)
-    start, end = ends(piece)
+    start, end = piece.ends
     p, q = (start[0] - origin[0], start[1] - origin[1]), (end[0] - origin[0], end[1] - origin[1])
     half = (p[0] * q[1] - p[1] * q[0]) / 2
     chord = half, half * (p[0] + q[0]) / 3, half * (p[1] + q[1]) / 3
     if isinstance(piece, Line):
         return chord
-    first, sweep = round_range(piece)
+    first, sweep = piece.range
     a = _less_sine(sweep) / 2
     moment = 2 / 3 * math.sin(sweep / 2) ** 3
     bisector = first + sweep / 2
@@ -210,9 +211,9 @@ def _bezier_moments(piece: Bezier, origin: Vec) -> Moments:
     """Integrals of (p x p')/2 and p (p x p')/3, polynomials of degree 5 and 8."""
     a = mx = my = 0.0
     for t, weight in gauss(5):
-        x, y = point(piece, t)
+        x, y = piece.point(t)
         x, y = x - origin[0], y - origin[1]
-        dx, dy = derivative(piece, t)
+        dx, dy = piece.derivative(t)
         cross = weight * (x * dy - y * dx)
         a, mx, my = a + cross / 2, mx + cross * x / 3, my + cross * y / 3
     return a, mx, my
@@ -232,24 +233,25 @@ def length(piece: Piece) -> float:
     if isinstance(piece, Line):
         return math.dist(piece.start, piece.end)
     if isinstance(piece, Arc | Circle):
-        return piece.radius * abs(round_range(piece)[1])
+        return piece.radius * abs(piece.range[1])
     nodes, shares, slopes = _quadrature()
     if isinstance(piece, Bezier):
         control = np.array((piece.p0, piece.p1, piece.p2, piece.p3))
         speed = np.hypot(*(slopes @ (3 * np.diff(control, axis=0))).T)
     else:
-        first, sweep = round_range(piece)
+        first, sweep = piece.range
         u = first + sweep * nodes
         speed = abs(sweep) * np.hypot(piece.rx * np.sin(u), piece.ry * np.cos(u))
     return float(speed @ shares)
 
 
 @cache
-def _quadrature(spans: int = 8) -> tuple[Floats, Floats, Floats]:
-    """Nodes and weights of a quadrature in so many spans of 0..1; at each the shares of the differences of
+def _quadrature() -> tuple[Floats, Floats, Floats]:
+    """Nodes and weights of a quadrature in some spans of 0..1; at each the shares of the differences of
     control points in the slope of a cubic.
     """
     at, shares = np.array(gauss(16)).T
+    spans = 8
     t = np.concatenate([(k + at) / spans for k in range(spans)])
     return t, np.tile(shares / spans, spans), np.stack(((1 - t) ** 2, 2 * t * (1 - t), t**2), axis=1)
 
@@ -266,46 +268,28 @@ Polygon = Floats
 
 COARSE = 0.05
 """Millimetres from an outline to the polygon that stands for it where places are sought."""
-COARSEST = TAU / 16
+COARSEST = math.tau / 16
 """Largest angle of a chord, so that a hole much smaller than the tolerance is still round."""
 SLACK = 1e-9
 """Slack in a count of chords, so that rounding does not choose how many there are."""
 _FINER, _ROUNDS = 16, 4
 
 
-def region_polygons(region: Region, tolerance: float) -> list[Polygon]:
-    """Returns one polygon for each loop of `region.loops`: outer ones counter-clockwise, holes clockwise."""
-    return [polygon for face in region.faces for polygon in face_polygons(face, tolerance)]
-
-
-def face_polygons(face: Face, tolerance: float) -> list[Polygon]:
-    """Returns the outer polygon, counter-clockwise, then those of the holes, clockwise."""
-    return [_faithful(loop, tolerance) for loop in face.loops]
-
-
 def _faithful(loop: Loop, tolerance: float) -> Polygon:
     """Returns a loop's polygon, which follows a thin loop closely enough not to turn inside out."""
     checkpoint()
-    exact = loop_area(loop)
+    exact = loop.area
     for _ in range(_ROUNDS):
-        polygon = loop_points(loop, tolerance)
+        polygon = loop.polygon(tolerance)
         if polygon_area(polygon) * exact > exact * exact / 2:
             break
         tolerance /= _FINER
     return polygon
 
 
-def loop_points(loop: Loop, tolerance: float) -> Polygon:
-    """Returns the polygon of a loop in its own direction (`tolerance` in mm, above 0)."""
-    if not tolerance > 0:
-        raise ValueError(f"the tolerance must be above 0, not {tolerance}")
-    polygon = np.concatenate([_from_start(piece, tolerance) for piece in loop.pieces])
-    return polygon[::-1] if loop.reversed else polygon
-
-
 def piece_points(piece: Piece, tolerance: float) -> Polygon:
     """Returns a polyline along a piece, both ends included."""
-    return np.concatenate((_from_start(piece, tolerance), [ends(piece)[1]]))
+    return np.concatenate((_from_start(piece, tolerance), [piece.ends[1]]))
 
 
 def polygon_area(polygon: Polygon) -> float:
@@ -316,8 +300,8 @@ def polygon_area(polygon: Polygon) -> float:
 
 def _from_start(piece: Piece, tolerance: float) -> Polygon:
     count = _chords(piece, tolerance)
-    found = points(piece, np.arange(count) / count)
-    found[0] = ends(piece)[0]
+    found = piece.points(np.arange(count) / count)
+    found[0] = piece.ends[0]
     return found
 
 
@@ -331,6 +315,6 @@ def _chords(piece: Piece, tolerance: float) -> int:
         sides = [(q[0] - p[0], q[1] - p[1]) for p, q in pairwise(corners)]
         bend = 6 * max(math.dist(a, b) for a, b in pairwise(sides))
         return max(3, math.ceil(math.sqrt(bend / (8 * tolerance)) - SLACK))
-    radius = piece.radius if isinstance(piece, Arc | Circle) else max(piece.rx, piece.ry)
-    step = min(COARSEST, 4 * math.asin(math.sqrt(min(1.0, tolerance / (2 * radius)))))
-    return max(2, math.ceil(abs(round_range(piece)[1]) / step - SLACK))
+    _, rx, ry, *_, sweep = piece.frame
+    step = min(COARSEST, 4 * math.asin(math.sqrt(min(1.0, tolerance / (2 * max(rx, ry))))))
+    return max(2, math.ceil(abs(sweep) / step - SLACK))

@@ -8,35 +8,16 @@ from dataclasses import replace
 from functools import lru_cache
 from importlib import import_module
 from itertools import accumulate
-from typing import Any, Literal, Protocol, Self, TypeVar
+from typing import Any, Literal, TypeVar
 
 import numpy as np
 
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
-from aidl_lang.geometry.curves import (
-    TAU,
-    Arc,
-    Circle,
-    Floats,
-    Ints,
-    Line,
-    Mask,
-    Piece,
-    Vec,
-    bounds,
-    ends,
-    is_closed,
-    locate,
-    nearest,
-    part,
-    point,
-    points,
-    union_bounds,
-)
-from aidl_lang.geometry.nearness import inside
-from aidl_lang.geometry.network import NODE, RELATIVE_TOLERANCE, UNKNOWN, Edge, Network
-from aidl_lang.geometry.region import Face, Loop, Polygon, Region, length, loop_area, polygon_area
+from aidl_lang.geometry.curves import Arc, Bounds, Circle, Floats, Ints, Line, Mask, Piece, Vec
+from aidl_lang.geometry.intersect import inside
+from aidl_lang.geometry.network import NODE, RELATIVE_TOLERANCE, UNKNOWN, Edge, Network, with_finer_chords
+from aidl_lang.geometry.region import Face, Loop, Polygon, Region, length, polygon_area
 from aidl_lang.solver.linear import each_once
 
 # --- A thin layer over Manifold's plane booleans, on polygons in grid units (see `network`).
@@ -49,18 +30,84 @@ _CORNERS = 32
 """Of the polygon that stands for a circle around a corner."""
 
 
-class Section(Protocol):
-    """The part of Manifold's `CrossSection` used here: an area of the plane bounded by polygons."""
+class Section:
+    """An area of the plane bounded by polygons: a `CrossSection` of Manifold, with its area and its box."""
 
-    def area(self) -> float: ...
-    def bounds(self) -> tuple[float, float, float, float]: ...
-    def is_empty(self) -> bool: ...
-    def num_contour(self) -> int: ...
-    def num_vert(self) -> int: ...
-    def decompose(self) -> list[Self]: ...
-    def to_polygons(self) -> list[Polygon]: ...
-    def __sub__(self, other: Self) -> Self: ...
-    def __xor__(self, other: Self) -> Self: ...
+    def __init__(self, shape: Any) -> None:
+        self._shape = shape
+        self.is_empty: bool = shape.is_empty()
+        self.area: float = shape.area()
+        self.box: Bounds = shape.bounds()
+
+    def num_contour(self) -> int:
+        return int(self._shape.num_contour())
+
+    def num_vert(self) -> int:
+        return int(self._shape.num_vert())
+
+    def to_polygons(self) -> list[Polygon]:
+        return list(self._shape.to_polygons())
+
+    def decompose(self) -> list[Section]:
+        """Returns its connected parts."""
+        return list(map(Section, self._shape.decompose()))
+
+    def holes(self) -> list[Section]:
+        """Returns the areas that its inner outlines enclose."""
+        whole = fill([p for p in self.to_polygons() if polygon_area(p) > 0], "NonZero")
+        return (whole - self).decompose()
+
+    def __sub__(self, other: Section) -> Section:
+        return Section(self._shape - other._shape) if self.may_meet(other) else self
+
+    def __and__(self, other: Section) -> Section:
+        return Section(self._shape ^ other._shape) if self.may_meet(other) else union([])
+
+    def may_meet(self, other: Section) -> bool:
+        """Tells whether the boxes overlap by more than nothing."""
+        if self.is_empty or other.is_empty:
+            return False
+        (a0, a1, a2, a3), (b0, b1, b2, b3) = self.box, other.box
+        return a0 < b2 and b0 < a2 and a1 < b3 and b1 < a3
+
+    def is_boxed_by(self, other: Section) -> bool:
+        """Tells whether its box lies in that of the other."""
+        (a0, a1, a2, a3), (b0, b1, b2, b3), e = self.box, other.box, NEGLIGIBLE
+        return a0 >= b0 - e and a1 >= b1 - e and a2 <= b2 + e and a3 <= b3 + e
+
+    @property
+    def is_nothing(self) -> bool:
+        """Whether it is empty, or thinner than the tolerance."""
+        left, bottom, right, top = self.box
+        return self._is_below((right - left) + (top - bottom))
+
+    @property
+    def is_thin(self) -> bool:
+        """Whether it may be but the difference of curves and chords."""
+        left, bottom, right, top = self.box
+        return self._is_below(100 * self.num_contour() * ((right - left) + (top - bottom)))
+
+    def _is_below(self, scale: float) -> bool:
+        return self.is_empty or abs(self.area) <= NEGLIGIBLE * scale
+
+    def overlaps(self, other: Section) -> bool:
+        return not (self & other).is_nothing
+
+    def covers(self, other: Section) -> bool:
+        """Tells whether nothing of the other lies outside."""
+        if self.is_empty or other.is_empty or not other.is_boxed_by(self):
+            return False
+        return (other - self)._is_below(math.sqrt(abs(other.area)))
+
+    def mask(self, spots: Polygon) -> Mask:
+        """Returns the mask of the points inside, in grid units."""
+        within = np.zeros(len(spots), dtype=np.bool_)
+        if not self.is_empty:
+            left, bottom, right, top = self.box
+            near = np.flatnonzero(((spots >= (left, bottom)) & (spots <= (right, top))).all(axis=1))
+            if len(near):
+                within[near] = inside(self.to_polygons(), spots[near])
+        return within
 
 
 @lru_cache(maxsize=1)
@@ -72,8 +119,7 @@ def _manifold() -> Any:
 def fill(polygons: Sequence[Polygon], rule: Literal["EvenOdd", "NonZero"]) -> Section:
     m = _manifold()
     kept = [p for p in polygons if len(p) > 2]
-    section: Section = m.CrossSection(kept, getattr(m.FillRule, rule)) if kept else m.CrossSection()
-    return section
+    return Section(m.CrossSection(kept, getattr(m.FillRule, rule)) if kept else m.CrossSection())
 
 
 def widened(polygon: Polygon, by: float, rough: float = 0.0) -> Polygon:
@@ -87,7 +133,7 @@ def widened(polygon: Polygon, by: float, rough: float = 0.0) -> Polygon:
         section = m.CrossSection([polygon], m.FillRule.NonZero)
         return section.offset(reach, m.JoinType.Round, 2.0, _CORNERS)
 
-    section: Section = grown(by)
+    section = grown(by)
     if rough:
         left, bottom, right, top = section.bounds()
         box = m.CrossSection.square((right - left, top - bottom)).translate((left, bottom))
@@ -101,68 +147,11 @@ def widened(polygon: Polygon, by: float, rough: float = 0.0) -> Polygon:
 def union(sections: Sequence[Section]) -> Section:
     """Returns the union of any number of sections."""
     m = _manifold()
-    full = [s for s in sections if not s.is_empty()]
+    full = [s for s in sections if not s.is_empty]
     if len(full) == 1:
         return full[0]
-    section: Section = m.CrossSection.batch_boolean(full, m.OpType.Add) if full else m.CrossSection()
-    return section
-
-
-def difference(a: Section, b: Section) -> Section:
-    return a - b if boxes_meet(a, b) else a
-
-
-def intersection(a: Section, b: Section) -> Section:
-    return a ^ b if boxes_meet(a, b) else union([])
-
-
-def boxes_meet(a: Section, b: Section) -> bool:
-    """Tells whether the bounding boxes overlap by more than nothing."""
-    if a.is_empty() or b.is_empty():
-        return False
-    (a0, a1, a2, a3), (b0, b1, b2, b3) = a.bounds(), b.bounds()
-    return bool(a0 < b2 and b0 < a2 and a1 < b3 and b1 < a3)
-
-
-def box_within(a: Section, b: Section) -> bool:
-    """Tells whether the box of a lies in the box of b."""
-    (a0, a1, a2, a3), (b0, b1, b2, b3) = a.bounds(), b.bounds()
-    e = NEGLIGIBLE
-    return bool(a0 >= b0 - e and a1 >= b1 - e and a2 <= b2 + e and a3 <= b3 + e)
-
-
-def is_nothing(section: Section, scale: float | None = None) -> bool:
-    """Tells whether an area is empty or thinner than the tolerance, compared with the size `scale`."""
-    if section.is_empty():
-        return True
-    if scale is None:
-        left, bottom, right, top = section.bounds()
-        scale = (right - left) + (top - bottom)
-    return bool(abs(section.area()) <= NEGLIGIBLE * scale)
-
-
-def covers(cover: Section, section: Section) -> bool:
-    """Tells whether nothing of the section lies outside the cover."""
-    if section.is_empty() or cover.is_empty() or not box_within(section, cover):
-        return False
-    return is_nothing(difference(section, cover), math.sqrt(abs(section.area())))
-
-
-def holes_of(section: Section) -> list[Section]:
-    """Returns the areas that the inner outlines of a section enclose."""
-    whole = fill([p for p in section.to_polygons() if polygon_area(p) > 0], "NonZero")
-    return difference(whole, section).decompose()
-
-
-def inside_mask(section: Section, spots: Polygon) -> Mask:
-    """Returns the mask of points, in grid units, inside a section."""
-    within = np.zeros(len(spots), dtype=np.bool_)
-    if not section.is_empty():
-        left, bottom, right, top = section.bounds()
-        near = np.flatnonzero(((spots >= (left, bottom)) & (spots <= (right, top))).all(axis=1))
-        if len(near):
-            within[near] = inside(section.to_polygons(), spots[near])
-    return within
+    shapes = [s._shape for s in full]
+    return Section(m.CrossSection.batch_boolean(shapes, m.OpType.Add) if shapes else m.CrossSection())
 
 
 def filled(
@@ -245,9 +234,14 @@ def trace_all(network: Network, sections: Sequence[Section]) -> list[Traced]:
             numbers = range(number, number + len(face))
             traced += faces_of([loop for k in numbers for loop in _loops(network, sides, k, used)])
             number += len(face)
-        traced.sort(key=lambda face: first_point(face.outer))
+        traced.sort(key=lambda face: face.outer.start)
         result.append(Traced(Region(tuple(traced)), frozenset(used)))
     return result
+
+
+def arranged(curves: Sequence[Piece], area: Callable[[Network], Section]) -> Region:
+    """Returns the region of an area that is put together from the network of some curves."""
+    return with_finer_chords(Network(curves), lambda network: trace(network, area(network)).region)
 
 
 def _components(section: Section) -> list[list[Polygon]]:
@@ -265,7 +259,9 @@ def faces_of(loops: list[tuple[float, Loop]]) -> list[Face]:
     holes: list[list[Loop]] = [[] for _ in outers]
     for hole, holder in zip(inner, _holders(outers, inner), strict=True):
         holes[holder].append(hole)
-    return [Face(o, tuple(sorted(h, key=first_point))) for o, h in zip(outers, holes, strict=True)]
+    return [
+        Face(o, tuple(sorted(h, key=lambda hole: hole.start))) for o, h in zip(outers, holes, strict=True)
+    ]
 
 
 def _holders(outers: list[Loop], holes: list[Loop]) -> list[int]:
@@ -273,21 +269,16 @@ def _holders(outers: list[Loop], holes: list[Loop]) -> list[int]:
     if len(outers) == 1 or not holes:
         return [0] * len(holes)
     holder = np.full(len(holes), -1)
-    spots = np.array([point(hole.pieces[0], 0.5) for hole in holes]).reshape(-1, 2)
+    spots = np.array([hole.pieces[0].point(0.5) for hole in holes]).reshape(-1, 2)
     ts = np.linspace(0, 1, 65)
     for number, outer in enumerate(outers):
-        left, bottom, right, top = union_bounds([bounds(piece) for piece in outer.pieces])
+        left, bottom, right, top = outer.box
         within = (spots >= (left, bottom)).all(axis=1) & (spots <= (right, top)).all(axis=1)
         seekers = np.flatnonzero(within & (holder < 0))
         if len(seekers):
-            polygon = np.concatenate([points(piece, ts)[:-1] for piece in outer.pieces])
+            polygon = np.concatenate([piece.points(ts)[:-1] for piece in outer.pieces])
             holder[seekers[inside([polygon], spots[seekers])]] = number
     return [int(k) for k in holder]
-
-
-def first_point(loop: Loop) -> Vec:
-    """Returns where a loop begins, by which loops and faces are in order."""
-    return ends(loop.pieces[0])[0]
 
 
 def _sides(network: Network, polygons: list[Floats]) -> Sides:
@@ -333,10 +324,10 @@ def _touched_node(network: Network, a: int, b: int, p: Vec) -> int | None:
         return None
     node = min(shared, key=lambda n: math.dist(network.nodes[n], p))
     curve, across, reach = network.curves[one.curve], network.curves[other.curve], 4 * network.tolerance
-    t, there = nearest(curve, p), one.t0 if node == one.start else one.t1
-    spots = (point(curve, t + (there - t) * k / 4) for k in range(4))
-    is_one = all(locate(across, spot, reach) is not None for spot in spots)
-    return node if is_one and math.dist(point(curve, t), p) <= reach else None
+    t, there = curve.nearest(p), one.t0 if node == one.start else one.t1
+    spots = (curve.point(t + (there - t) * k / 4) for k in range(4))
+    is_one = all(across.locate(spot, reach) is not None for spot in spots)
+    return node if is_one and math.dist(curve.point(t), p) <= reach else None
 
 
 def _loops(network: Network, sides: Sides, number: int, used: set[int]) -> list[tuple[float, Loop]]:
@@ -354,7 +345,7 @@ def _loops(network: Network, sides: Sides, number: int, used: set[int]) -> list[
     result = []
     for simple in _split_at_pinches(_snapped(runs, network.tolerance)):
         loop = _to_loop(network, joined(simple, lambda a, b: _continue(network, a, b)))
-        area = loop_area(loop)
+        area = loop.area
         if abs(area) > network.tolerance * sum(map(length, loop.pieces)) / 2:
             result.append((area, loop))
     return result
@@ -410,9 +401,9 @@ def _parameter(network: Network, sides: Sides, edge: Edge, vertex: int, beside: 
         if edge.start != edge.end:
             return edge.t0 if node == edge.start else edge.t1
         # Both ends of the part are here: the one that the vertex beside it is near to.
-        t = nearest(network.curves[edge.curve], _spot(network, sides, beside)[1])
+        t = network.curves[edge.curve].nearest(_spot(network, sides, beside)[1])
         return edge.t0 if t < (edge.t0 + edge.t1) / 2 else edge.t1
-    return min(edge.t1, max(edge.t0, nearest(network.curves[edge.curve], p)))
+    return min(edge.t1, max(edge.t0, network.curves[edge.curve].nearest(p)))
 
 
 def _snapped(runs: list[Run], tolerance: float) -> list[Run]:
@@ -432,16 +423,16 @@ def _continue(network: Network, a: Run, b: Run) -> Run | None:
         return None
     if a.t1 == b.t0:
         return Run(a.curve, a.t0, b.t1, a.start, b.end)
-    if is_closed(network.curves[a.curve]) and abs(math.remainder(a.t1 - b.t0, 1.0)) <= 1e-12:  # rounding
+    if network.curves[a.curve].is_closed and abs(math.remainder(a.t1 - b.t0, 1.0)) <= 1e-12:  # rounding
         return Run(a.curve, a.t0, a.t1 + (b.t1 - b.t0), a.start, b.end)
     return None
 
 
 def _to_loop(network: Network, runs: list[Run]) -> Loop:
-    if len(runs) == 1 and runs[0].curve is not None and is_closed(curve := network.curves[runs[0].curve]):
+    if len(runs) == 1 and runs[0].curve is not None and (curve := network.curves[runs[0].curve]).is_closed:
         return Loop((curve,), reversed=runs[0].t1 < runs[0].t0)
     pieces = [
-        Line(r.start, r.end) if r.curve is None else part(network.curves[r.curve], r.t0, r.t1, r.start, r.end)
+        Line(r.start, r.end) if r.curve is None else network.curves[r.curve].part(r.t0, r.t1, r.start, r.end)
         for r in runs
     ]
     return closed_loop(pieces, network.tolerance)
@@ -450,12 +441,12 @@ def _to_loop(network: Network, runs: list[Run]) -> Loop:
 def closed_loop(pieces: Sequence[Piece], tolerance: float) -> Loop:
     """Returns the loop of pieces that follow each other, in a canonical form."""
     pieces = joined(pieces, lambda a, b: _fuse(a, b, tolerance))
-    if len(pieces) == 1 and isinstance(arc := pieces[0], Arc) and abs(arc.sweep) > TAU - 1e-6:
+    if len(pieces) == 1 and isinstance(arc := pieces[0], Arc) and abs(arc.sweep) > math.tau - 1e-6:
         return Loop((Circle(arc.center, arc.radius),), reversed=arc.sweep < 0)
 
     # The leftmost point begins, the lowest of those: compared coarsely, so that rounding does not choose.
     def begins(number: int) -> tuple[int, ...]:
-        return tuple(round(c / (2 * tolerance)) for c in ends(pieces[number])[0])
+        return tuple(round(c / (2 * tolerance)) for c in pieces[number].ends[0])
 
     first = min(range(len(pieces)), key=begins)
     return Loop((*pieces[first:], *pieces[:first]))
@@ -467,7 +458,7 @@ def _fuse(a: Piece, b: Piece, tolerance: float) -> Piece | None:
         return _fuse_lines(a, b, tolerance)
     if isinstance(a, Arc) and isinstance(b, Arc):
         same = math.dist(a.center, b.center) <= tolerance and abs(a.radius - b.radius) <= tolerance
-        if same and a.sweep * b.sweep > 0 and abs(a.sweep + b.sweep) <= TAU + 1e-9:
+        if same and a.sweep * b.sweep > 0 and abs(a.sweep + b.sweep) <= math.tau + 1e-9:
             return Arc(a.center, a.radius, a.start, b.end, a.sweep + b.sweep)
     return None
 

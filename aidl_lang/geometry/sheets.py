@@ -19,7 +19,7 @@ from aidl_lang.common.running import checkpoint
 from aidl_lang.geometry.curves import Bounds
 from aidl_lang.geometry.drawing import Drawing, Stroke
 from aidl_lang.geometry.parts import Motion, Part, Size, drawn, gathered, parts_of, upright_turn
-from aidl_lang.geometry.region import COARSE, Polygon, face_polygons, polygon_area
+from aidl_lang.geometry.region import COARSE, Polygon, polygon_area
 from aidl_lang.geometry.sections import widened
 from aidl_lang.geometry.solved import SolvedStructure
 
@@ -149,11 +149,9 @@ def _turns(box: Bounds, sheet: tuple[float, float]) -> list[float]:
     return [*upright, *lying]
 
 
-# --- The bodies of a drawing laid flat, apart from one another, on sheets to cut them from.
-#
-# Bodies lie as their own frames do, and are moved and turned by quarters, never mirrored: their front stays
-# up, and every curve is as exact as before. They are packed by their boxes, or in a time given for it by
-# their outlines. Those of different material or thickness are cut from different sheets.
+# --- Bodies lie as their own frames do, and are moved and turned by quarters, never mirrored: their front
+# stays up, and every curve is as exact as before. They are packed by their boxes, or in a time given for it
+# by their outlines. Those of different material or thickness are cut from different sheets.
 
 SPACING = 3.0
 """Millimetres between parts, and between them and the edge of the sheet."""
@@ -270,7 +268,7 @@ def _outline(part: Part) -> Polygon:
     """Returns the outline of a part; its box, if it is in pieces or has engraving beyond its material."""
     faces = part.body.region.faces
     if len(faces) == 1 and part.box == part.body.box:
-        return face_polygons(faces[0], COARSE)[0]
+        return faces[0].polygons(COARSE)[0]
     left, bottom, right, top = part.box
     return np.array([(left, bottom), (right, bottom), (right, top), (left, top)])
 

@@ -11,19 +11,10 @@ from dataclasses import field
 from functools import cached_property
 from typing import TypeAlias
 
+from aidl_lang.common.prose import rough
 from aidl_lang.common.records import record
 from aidl_lang.common.source import Span
-from aidl_lang.geometry.curves import (
-    FIELDS,
-    Arc,
-    Bezier,
-    Bounds,
-    Circle,
-    Piece,
-    Vec,
-    all_bounds,
-    union_bounds,
-)
+from aidl_lang.geometry.curves import FIELDS, Arc, Bezier, Bounds, Circle, Piece, Vec, union_bounds
 from aidl_lang.geometry.region import Region
 from aidl_lang.syntax import ast
 
@@ -55,7 +46,7 @@ class Box:
         curves: Iterable[Piece], structures: Iterable[SolvedStructure], more: Iterable[Bounds] = ()
     ) -> Box | None:
         """Returns the box of some curves, of what is material of some structures, and of some more."""
-        boxes = [*more, *all_bounds(curves)]
+        boxes = [*more, *(curve.box for curve in curves)]
         boxes += [s.box.bounds for s in structures if s.box is not None and s.kind != "hole"]
         return Box(*union_bounds(boxes)) if boxes else None
 
@@ -430,3 +421,8 @@ def described(curve: Piece) -> tuple[str, Values]:
         elif name != "first":
             values[name] = math.degrees(value) if name == "angle" else value
     return curve.kind, values
+
+
+def at(p: Vec) -> str:
+    """Returns a place as messages have it."""
+    return f"({rough(p[0])}, {rough(p[1])})"

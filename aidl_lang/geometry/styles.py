@@ -307,9 +307,7 @@ _REMEDY = "make `{0}` an `assembly` of several bodies"
 
 def stacked(root: SolvedStructure) -> Iterator[SolvedStructure]:
     """Yields a structure and all below it from back to front; parts lie on the whole."""
-    yield root
-    for child in _ordered(root.structures):
-        yield from stacked(child)
+    return (s for s, _, is_more in layers(root) if not is_more)
 
 
 def layers(root: SolvedStructure) -> Iterator[tuple[SolvedStructure, Sequence[SolvedGeometry], bool]]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import field, replace
 from itertools import combinations
 
 from aidl_lang.building.curves import gauss
@@ -15,20 +15,9 @@ from aidl_lang.common.prose import did_you_mean, first_few, ticked
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
 from aidl_lang.geometry.boolean import Contact, region_distance
-from aidl_lang.geometry.curves import (
-    Bezier,
-    Bounds,
-    Circle,
-    Ellipse,
-    Line,
-    Piece,
-    Vec,
-    derivative,
-    point,
-    round_range,
-)
+from aidl_lang.geometry.curves import Bezier, Bounds, Circle, Ellipse, Line, Piece, Vec
 from aidl_lang.geometry.drawing import Body, Drawing, region_alone
-from aidl_lang.geometry.region import Region, measure, moments_about_start
+from aidl_lang.geometry.region import Region, measure
 from aidl_lang.geometry.solved import SolvedModel
 from aidl_lang.geometry.walls import widths
 
@@ -83,7 +72,7 @@ def inertia(region: Region, centroid: Vec) -> Inertia:
     xx = yy = xy = 0.0
     for loop in region.loops:
         sign = -1 if loop.reversed else 1
-        start, (a, mx, my) = moments_about_start(loop)
+        start, (a, mx, my) = loop.start, loop.moments
         dx, dy = start[0] - centroid[0], start[1] - centroid[1]
         sx, sy, sxy = map(math.fsum, zip(*(_piece_squares(p, start) for p in loop.pieces), strict=True))
         # The parallel axis theorem, from the start of the loop to the centroid.
@@ -133,14 +122,14 @@ def _curved(piece: Piece, origin: Vec) -> Squares:
     """Integrals of (p × p') times a quarter of x², y² and xy."""
     spans = 1
     if not isinstance(piece, Line | Bezier):
-        spans = max(1, math.ceil(abs(round_range(piece)[1]) / (math.pi / 2) - 1e-9))
+        spans = max(1, math.ceil(abs(piece.range[1]) / (math.pi / 2) - 1e-9))
     xx = yy = xy = 0.0
     for k in range(spans):
         for node, weight in gauss(12):
             t = (k + node) / spans
-            x, y = point(piece, t)
+            x, y = piece.point(t)
             x, y = x - origin[0], y - origin[1]
-            dx, dy = derivative(piece, t)
+            dx, dy = piece.derivative(t)
             cross = weight / spans * (x * dy - y * dx) / 4
             xx, yy, xy = xx + cross * x * x, yy + cross * y * y, xy + cross * x * y
     return xx, yy, xy
@@ -206,36 +195,21 @@ class Part:
     def to_dict(self) -> dict[str, object]:
         """Returns the form in JSON."""
         left, bottom, right, top = self.box
-        squares = self.inertia
         return {
-            "path": self.path,
-            "kind": self.kind,
-            "bodies": self.bodies,
-            "area": self.area,
-            "perimeter": self.perimeter,
-            "centroid": self.centroid,
+            **_read(self, "path", "kind", "bodies", "area", "perimeter", "centroid"),
             "box": {"left": left, "right": right, "top": top, "bottom": bottom},
             "width": right - left,
             "height": top - bottom,
-            "pieces": self.pieces,
-            "holes": self.holes,
-            "inertia": {
-                "xx": squares.xx,
-                "yy": squares.yy,
-                "xy": squares.xy,
-                "polar": squares.polar,
-                "principal": squares.principal,
-                "angle": squares.angle,
-            },
+            **_read(self, "pieces", "holes"),
+            "inertia": _read(self.inertia, "xx", "yy", "xy", "polar", "principal", "angle"),
             "wall": self.wall and self.wall.to_dict(),
             "gap": self.gap and self.gap.to_dict(),
-            "thickness": self.thickness,
-            "material": self.material,
-            "density": self.density,
-            "volume": self.volume,
-            "mass": self.mass,
-            "quantity": self.quantity,
+            **_read(self, "thickness", "material", "density", "volume", "mass", "quantity"),
         }
+
+
+def _read(of: Part | Inertia, *names: str) -> dict[str, object]:
+    return {name: getattr(of, name) for name in names}
 
 
 @record()
@@ -319,15 +293,15 @@ def measured(
     return surveyor.part(path) if path else surveyor.of_bodies(model.root.path, drawing.bodies)
 
 
+@record(frozen=False)
 class _Surveyor:
     """Measures parts of a drawing, each body once."""
 
-    def __init__(self, model: SolvedModel, drawing: Drawing, own_densities: Mapping[str, float]) -> None:
-        self.model = model
-        self.drawing = drawing
-        self.own_densities = own_densities
-        self._bodies: dict[str, Part] = {}
-        self._unknown: dict[str, str] = {}
+    model: SolvedModel
+    drawing: Drawing
+    own_densities: Mapping[str, float]
+    _bodies: dict[str, Part] = field(default_factory=dict)
+    _unknown: dict[str, str] = field(default_factory=dict)
 
     def part(self, written: str) -> Part:
         """Returns the part at a path, written with or without the name of the root."""

@@ -20,23 +20,12 @@ import numpy as np
 
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
-from aidl_lang.geometry.boolean import clearance, clipped_each, within
-from aidl_lang.geometry.curves import (
-    Bounds,
-    Floats,
-    Line,
-    Piece,
-    Vec,
-    bounds,
-    image,
-    larger_side,
-    turn_between,
-    union_bounds,
-)
-from aidl_lang.geometry.nearness import Sides, inside
+from aidl_lang.geometry.boolean import clearance, clipped_each, common
+from aidl_lang.geometry.curves import Bounds, Floats, Line, Piece, Vec, image, turn_between, union_bounds
+from aidl_lang.geometry.intersect import Sides, inside
 from aidl_lang.geometry.network import CHORD, RELATIVE_TOLERANCE
 from aidl_lang.geometry.offsets import thick
-from aidl_lang.geometry.region import Region, area, region_bounds, region_polygons
+from aidl_lang.geometry.region import Region
 
 MOST = 10_000
 """Copies of a cell that are made at most."""
@@ -52,10 +41,6 @@ _AT_ONCE = 1000
 
 class TooManyCopiesError(Exception):
     """Raised with the number of copies that a region would take."""
-
-    def __init__(self, count: int) -> None:
-        super().__init__(count)
-        self.count = count
 
 
 @record()
@@ -128,11 +113,19 @@ class Lattice:
             raise TooManyCopiesError(len(kept))
         return [(x, y) for x, y in (kept + self.offset).tolist()]
 
-    def run_of(self, curve: Piece) -> tuple[Vec, Vec | None] | None:
+    def told_apart(self, cell: Sequence[Piece], box: Bounds) -> tuple[list[Piece], list[Piece]]:
+        """Returns the curves that end in their copy, and the lines that the others are together in a box."""
+        single, running = list[Piece](), list[Piece]()
+        for curve in cell:
+            if isinstance(curve, Line) and (run := self._run_of(curve)) is not None:
+                running += self._run_together(curve, *run, box)
+            else:
+                single.append(curve)
+        return single, running
+
+    def _run_of(self, line: Line) -> tuple[Vec, Vec | None] | None:
         """Returns the step along which a line runs on, and the other one; None for what ends in its copy."""
-        if not isinstance(curve, Line):
-            return None
-        way = curve.end[0] - curve.start[0], curve.end[1] - curve.start[1]
+        way = line.way
         for along, other in ((self.step, self.row), (self.row, self.step)):
             if along is None:
                 continue
@@ -141,11 +134,8 @@ class Lattice:
                 return along, other
         return None
 
-    def run_together(self, line: Line, box: Bounds) -> Iterator[Line]:
+    def _run_together(self, line: Line, along: Vec, other: Vec | None, box: Bounds) -> Iterator[Line]:
         """Yields the lines that the copies of one are together, as far as they may lie in a box."""
-        found = self.run_of(line)
-        assert found is not None
-        along, other = found
         length = math.hypot(*along)
         unit = along[0] / length, along[1] / length
         x, y = line.start[0] + self.offset[0], line.start[1] + self.offset[1]
@@ -168,7 +158,7 @@ class Lattice:
 
 def tiled_strokes(cell: Sequence[Piece], region: Region, lattice: Lattice, *, whole: bool) -> list[Piece]:
     """Returns the strokes of all copies that lie inside; with `whole` of those that lie inside wholly."""
-    single, running = _told_apart(cell, lattice, region_bounds(region)) if not whole else (cell, [])
+    single, running = lattice.told_apart(cell, region.box) if not whole else (cell, [])
     pieces = [p for one in clipped_each(running, region) for p in one.inner]
     if not single:
         return pieces
@@ -191,19 +181,19 @@ def tiled_areas(cell: Region, region: Region, lattice: Lattice, *, whole: bool) 
     if whole:
         inner, crossing = [*inner, *_uncut(crossing, region)], []
     if _meet_each_other(cell, lattice):
-        return within(region, [*inner, *crossing])
-    cut = within(region, [_together(crossing)]) if crossing else Region()
+        return common(region, *inner, *crossing)
+    cut = common(region, _together(crossing)) if crossing else Region()
     return _together([*inner, cut])
 
 
 def tiled_bars(cell: Sequence[Piece], region: Region, lattice: Lattice, width: float) -> Region:
     """Returns what lies inside of all copies of strokes drawn with a pen of a width."""
-    left, bottom, right, top = region_bounds(region)
+    left, bottom, right, top = region.box
     box = left - width, bottom - width, right + width, top + width
-    single, strokes = _told_apart(cell, lattice, box)
+    single, strokes = lattice.told_apart(cell, box)
     if single:
         strokes += [_moved(c, way) for way in lattice.ways(*_reach(single, box)) for c in single]
-    return within(region, [thick(strokes, width, "square")]) if strokes else Region()
+    return common(region, thick(strokes, width, "square")) if strokes else Region()
 
 
 def _anchor(region: Region, step: Vec, sense: float, *, is_middle: bool) -> Vec:
@@ -216,7 +206,7 @@ def _anchor(region: Region, step: Vec, sense: float, *, is_middle: bool) -> Vec:
 
     across = math.atan2(y, x)
     images = (image(c, level, turned=lambda a: sense * (a - across), sense=sense) for c in region.pieces)
-    left, bottom, right, top = union_bounds([bounds(c) for c in images])
+    left, bottom, right, top = union_bounds([c.box for c in images])
     u, v = ((left + right) / 2, (bottom + top) / 2) if is_middle else (left, bottom)
     return u * x - sense * v * y, u * y + sense * v * x
 
@@ -224,21 +214,14 @@ def _anchor(region: Region, step: Vec, sense: float, *, is_middle: bool) -> Vec:
 # --- Copies ------------------------------------------------------------------------------------------
 
 
-def _told_apart(cell: Sequence[Piece], lattice: Lattice, box: Bounds) -> tuple[list[Piece], list[Piece]]:
-    """Returns the curves that end in their copy, and the lines that the others are together in a box."""
-    single = [c for c in cell if lattice.run_of(c) is None]
-    running = [c for c in cell if isinstance(c, Line) and lattice.run_of(c) is not None]
-    return single, [line for c in running for line in lattice.run_together(c, box)]
-
-
 def _sorted(cell: Sequence[Piece], region: Region, lattice: Lattice) -> tuple[list[Vec], list[Vec]]:
     """Returns the ways of the copies that lie wholly inside, and of those that the border may cut."""
-    ways = lattice.ways(*_reach(cell, region_bounds(region)))
-    left, bottom, right, top = union_bounds([bounds(c) for c in cell])
+    ways = lattice.ways(*_reach(cell, region.box))
+    left, bottom, right, top = union_bounds([c.box for c in cell])
     radius = math.hypot(right - left, top - bottom) / 2
     spots = np.array(ways).reshape(-1, 2) + np.array(((left + right) / 2, (bottom + top) / 2))
     size = float(np.ptp(region.boxes.reshape(-1, 2), axis=0).max())
-    polygons = region_polygons(region, CHORD * size)
+    polygons = region.polygons(CHORD * size)
     sides = Sides(np.concatenate([np.concatenate((p, np.roll(p, -1, axis=0)), axis=1) for p in polygons]))
     crossing = np.zeros(len(spots), dtype=np.bool_)
     for begin in range(0, len(spots), _AT_ONCE):
@@ -250,14 +233,14 @@ def _sorted(cell: Sequence[Piece], region: Region, lattice: Lattice) -> tuple[li
 
 def _reach(cell: Sequence[Piece], box: Bounds) -> tuple[Floats, Floats]:
     """Returns the least and the greatest way of copies of a cell that meet a box."""
-    own = union_bounds([bounds(c) for c in cell])
+    own = union_bounds([c.box for c in cell])
     return np.array((box[0] - own[2], box[1] - own[3])), np.array((box[2] - own[0], box[3] - own[1]))
 
 
 def _meet_each_other(cell: Region, lattice: Lattice) -> bool:
     """Tells whether copies of an area touch or overlap."""
-    left, bottom, right, top = region_bounds(cell)
-    near = RELATIVE_TOLERANCE * larger_side((left, bottom, right, top))
+    left, bottom, right, top = cell.box
+    near = RELATIVE_TOLERANCE * max(right - left, top - bottom)
     row = lattice.row or (0.0, 0.0)
     for j in range(_NEXT + 1 if lattice.row is not None else 1):
         for i in range(-_NEXT if j else 1, _NEXT + 1):
@@ -275,7 +258,7 @@ def _uncut(areas: Sequence[Region], region: Region) -> list[Region]:
     kept = [r for r, pieces in zip(areas, found, strict=True) if all(one.is_whole for one in pieces)]
     if not any(face.holes for face in region.faces):
         return kept
-    return [r for r in kept if abs(area(within(region, [r])) - area(r)) <= RELATIVE_TOLERANCE * area(r)]
+    return [r for r in kept if abs(common(region, r).area - r.area) <= RELATIVE_TOLERANCE * r.area]
 
 
 def _moved(curve: Piece, way: Vec) -> Piece:

@@ -31,18 +31,7 @@ from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
 from aidl_lang.geometry.boolean import piece_distance
 from aidl_lang.geometry.chords import ANGLE, Chords, Skeleton, chords, direction, joined, within
-from aidl_lang.geometry.curves import (
-    Arc,
-    Circle,
-    Floats,
-    Line,
-    Vec,
-    derivative,
-    ends,
-    is_closed,
-    point,
-    second_derivative,
-)
+from aidl_lang.geometry.curves import Arc, Circle, Floats, Line, Vec
 from aidl_lang.geometry.network import RELATIVE_TOLERANCE
 from aidl_lang.geometry.region import Region
 from aidl_lang.geometry.solved import SolvedStructure
@@ -165,7 +154,7 @@ def _touch(o: Skeleton, tolerance: float) -> Vec | None:
 
 def _is_convex(outline: Skeleton) -> bool:
     """Tells whether the outline is one loop that turns to the left only: beside it there is no gap."""
-    whole = [is_closed(p) for p in outline.pieces]
+    whole = [p.is_closed for p in outline.pieces]
     return bool(
         np.all((outline.side > 0) | (outline.half < ANGLE))
         and (whole == [True] or not any(whole))
@@ -203,17 +192,17 @@ class _End:
             if isinstance(self.piece, Circle):
                 turn = math.atan2(at[1] - self.piece.center[1], at[0] - self.piece.center[0])
                 self.t = turn / (2 * math.pi)
-        self.at = at if self.is_fixed else point(self.piece, self.t)
+        self.at = at if self.is_fixed else self.piece.point(self.t)
 
     def slopes(self) -> tuple[Vec, Vec]:
-        return derivative(self.piece, self.t), second_derivative(self.piece, self.t)
+        return self.piece.derivative(self.t), self.piece.second_derivative(self.t)
 
     def move(self, step: float) -> None:
         if not self.is_fixed:
             self.t += step
-            if not is_closed(self.piece):
+            if not self.piece.is_closed:
                 self.t = min(1.0, max(0.0, self.t))
-            self.at = point(self.piece, self.t)
+            self.at = self.piece.point(self.t)
 
 
 def _polish(one: _End, other: _End) -> bool:
@@ -246,10 +235,10 @@ def _polish(one: _End, other: _End) -> bool:
 def _tapers(o: Skeleton) -> Iterator[tuple[int, Chord]]:
     """Yields ends towards which a part, or an opening, gets narrower (see above)."""
     for k, piece in enumerate(o.pieces):
-        if is_closed(piece):
+        if piece.is_closed:
             continue
         checkpoint()
-        p, q = ends(piece)
+        p, q = piece.ends
         along = math.atan2(q[1] - p[1], q[0] - p[0])
         # The lean of the neighbours towards each other, as turns from the chord: a quarter is straight up.
         back = math.remainder(direction(o.pieces[o.before[k]], 1.0) + math.pi - along, 2 * math.pi)

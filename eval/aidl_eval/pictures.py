@@ -10,8 +10,7 @@ from aidl_lang.export import render as render_picture
 from aidl_lang.export.job import Options
 from aidl_lang.export.marks import OUTLINE, Area, Curves, Group, Ink, Mark, Picture, body_fill, outline_of
 from aidl_lang.export.picture import MARGIN, OUTLINE_WIDTH
-from aidl_lang.geometry.curves import bounds, union_bounds
-from aidl_lang.geometry.region import region_bounds
+from aidl_lang.geometry.curves import union_bounds
 
 _NEUTRAL, _EDGE = "#c9ced6", "#2b2f36"
 """The one fill, and the ink of all edges."""
@@ -32,8 +31,8 @@ def colored(drawn: Regions) -> bytes:
 
 
 def _png(drawn: Regions, fills: list[str], edges: list[str]) -> bytes:
-    boxes = [region_bounds(part.region) for part in drawn.parts]
-    boxes += [bounds(piece) for line in drawn.lines for piece in line]
+    boxes = [part.region.box for part in drawn.parts]
+    boxes += [piece.box for line in drawn.lines for piece in line]
     left, bottom, right, top = union_bounds(boxes)
     size = max(right - left, top - bottom) or 1.0
     margin = MARGIN * size

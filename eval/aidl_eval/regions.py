@@ -13,7 +13,7 @@ from aidl_eval.things import covered, drawn
 from aidl_lang.geometry.boolean import common
 from aidl_lang.geometry.curves import Piece
 from aidl_lang.geometry.drawing import Drawing
-from aidl_lang.geometry.region import Polygon, Region, region_bounds, region_polygons
+from aidl_lang.geometry.region import Polygon, Region
 from aidl_lang.geometry.solved import SolvedModel, SolvedStructure
 from aidl_lang.geometry.styles import stacked
 
@@ -42,13 +42,13 @@ class Regions:
     @cached_property
     def size(self) -> float:
         """The larger side of the box around the parts."""
-        boxes = np.array([region_bounds(part.region) for part in self.parts] or [(0.0, 0.0, 0.0, 0.0)])
+        boxes = np.array([part.region.box for part in self.parts] or [(0.0, 0.0, 0.0, 0.0)])
         return float(max(boxes[:, 2].max() - boxes[:, 0].min(), boxes[:, 3].max() - boxes[:, 1].min()))
 
     @cached_property
     def outlines(self) -> tuple[tuple[Polygon, ...], ...]:
         """The outlines of each part as polygons; holes run clockwise."""
-        return tuple(tuple(region_polygons(p.region, FINE * (self.size or 1.0))) for p in self.parts)
+        return tuple(tuple(p.region.polygons(FINE * (self.size or 1.0))) for p in self.parts)
 
     @cached_property
     def whole(self) -> Region:

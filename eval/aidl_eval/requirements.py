@@ -28,7 +28,7 @@ from aidl_lang.common.prose import first_few
 from aidl_lang.explaining.outcome import assertion_note, measured
 from aidl_lang.geometry.boolean import united
 from aidl_lang.geometry.drawing import Drawing
-from aidl_lang.geometry.region import Region, region_bounds
+from aidl_lang.geometry.region import Region
 from aidl_lang.geometry.solved import Box, SolvedModel
 from aidl_lang.interp import interpret
 from aidl_lang.pipeline import Compiled, front
@@ -195,7 +195,7 @@ def examine_regions(prompt: Prompt, drawn: Regions) -> tuple[Result, ...]:
     whole = next((child for child in asked.root.children if child.name == WHOLE), None)
     values = dict(_measured_values(asked, drawn))
     if whole is not None:
-        values |= dict(_box_values(whole, Box(*region_bounds(drawn.whole)) if drawn.whole else None))
+        values |= dict(_box_values(whole, Box(*drawn.whole.box) if drawn.whole else None))
     evaluate = Evaluator(values, lambda payload: math.nan)
     judge = _Judge(evaluate, _by_start(asked))
     return tuple(judge.result(r) for r in prompt.requirements if r.is_geometric)

@@ -17,7 +17,7 @@ from typing import TypeAlias
 from aidl_eval.things import Group, Origins, Part, Thing, drawn, names, outlines
 from aidl_eval.whole import NEAR
 from aidl_lang.geometry.drawing import Drawing
-from aidl_lang.geometry.nearness import near_pairs
+from aidl_lang.geometry.intersect import near_pairs
 from aidl_lang.geometry.solved import SolvedModel, SolvedStructure
 
 Words: TypeAlias = tuple[str, ...]

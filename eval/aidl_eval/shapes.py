@@ -88,7 +88,7 @@ def _disc(center: Polygon, radius: float) -> Polygon:
 
 
 def _region(section: Section) -> Region:
-    if section.is_empty():
+    if section.is_empty:
         return Region()
     return Region(tuple(_face(part.to_polygons()) for part in section.decompose()))
 

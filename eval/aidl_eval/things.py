@@ -11,11 +11,11 @@ from typing import TypeAlias
 from aidl_lang import Span
 from aidl_lang.common.prose import first_few
 from aidl_lang.geometry.boolean import united, without
-from aidl_lang.geometry.curves import Bounds, bounds, union_bounds
+from aidl_lang.geometry.curves import Bounds, union_bounds
 from aidl_lang.geometry.drawing import Drawing, draw
 from aidl_lang.geometry.offsets import hull
 from aidl_lang.geometry.outlines import complete
-from aidl_lang.geometry.region import Region, perimeter, region_bounds
+from aidl_lang.geometry.region import Region
 from aidl_lang.geometry.solved import Box, Frame, SolvedGeometry, SolvedModel, SolvedStructure
 from aidl_lang.syntax import ast
 
@@ -67,7 +67,7 @@ class Thing:
         """Returns the box of its curves; of its region if it has no curves yet."""
         box = self.bounds()
         if box is None and (found := region()):
-            box = region_bounds(found)
+            box = found.box
         return Box(*box) if box is not None else None
 
     def buried(self, material: Region | None, drawing: Drawing) -> Thing:
@@ -76,8 +76,8 @@ class Thing:
         """
         if not material or not (own := self.region(drawing)):
             return self
-        edges = perimeter(material) + perimeter(own)
-        left = perimeter(without(material, own))
+        edges = material.perimeter + own.perimeter
+        left = without(material, own).perimeter
         return replace(self, is_buried=math.isclose(left, edges, rel_tol=_SAME))
 
     def without(self, others: Set[str]) -> Thing:
@@ -110,7 +110,7 @@ def _alone(group: Group) -> SolvedModel:
 
 def _boxes(part: Part) -> Iterator[Bounds]:
     if isinstance(part, SolvedGeometry):
-        yield from map(bounds, part.curves())
+        yield from (curve.box for curve in part.curves())
     elif (box := part.box) is not None:
         yield box.left, box.bottom, box.right, box.top
 

@@ -9,19 +9,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from aidl_eval.regions import Regions
-from aidl_lang.geometry.boolean import common, overlap_area, region_distance
-from aidl_lang.geometry.curves import Line, inward, points
-from aidl_lang.geometry.nearness import near_pairs
-from aidl_lang.geometry.region import (
-    Face,
-    Loop,
-    Region,
-    area,
-    loop_area,
-    measure,
-    polygon_area,
-    region_bounds,
-)
+from aidl_lang.geometry.boolean import common, region_distance
+from aidl_lang.geometry.curves import Line, inward
+from aidl_lang.geometry.intersect import near_pairs
+from aidl_lang.geometry.region import Face, Loop, Region, measure, polygon_area
 
 NEAR = 0.02
 """Distance, as a share of the drawing, up to which parts hold together."""
@@ -51,7 +42,7 @@ def pieces(whole: Region) -> float:
             k = group[k]
         return k
 
-    boxes = [region_bounds(Region((face,))) for face in whole.faces]
+    boxes = [Region((face,)).box for face in whole.faces]
     reach = NEAR * _size(whole)
     for i, j in near_pairs(boxes, reach):
         if head(i) != head(j):
@@ -66,7 +57,7 @@ def symmetry(whole: Region) -> float:
     if not whole:
         return math.nan
     x = measure(whole).centroid[0]
-    return overlap_area(_seen(whole, x, mirrored=False), _seen(whole, x, mirrored=True)) / area(whole)
+    return common(_seen(whole, x, mirrored=False), _seen(whole, x, mirrored=True)).area / whole.area
 
 
 def _seen(region: Region, x: float, *, mirrored: bool) -> Region:
@@ -81,7 +72,7 @@ def openings(whole: Region) -> float:
     if not whole:
         return 0.0
     least = (_SLIVER * _size(whole)) ** 2
-    return float(sum(abs(loop_area(hole)) > least for face in whole.faces for hole in face.holes))
+    return float(sum(abs(hole.area) > least for face in whole.faces for hole in face.holes))
 
 
 def teeth(whole: Region) -> float:
@@ -90,10 +81,10 @@ def teeth(whole: Region) -> float:
     """
     if not whole:
         return math.nan
-    outer = max(whole.faces, key=lambda face: area(Region((Face(face.outer),)))).outer
+    outer = max(whole.faces, key=lambda face: Region((Face(face.outer),)).area).outer
     center = measure(Region((Face(outer),))).centroid
     steps = np.linspace(0.0, 1.0, _SAMPLES)
-    away = np.concatenate([np.hypot(*(points(p, steps) - center).T) for p in outer.pieces])
+    away = np.concatenate([np.hypot(*(p.points(steps) - center).T) for p in outer.pieces])
     beyond = away > (away.min() + away.max()) / 2
     return float(np.count_nonzero(beyond & ~np.roll(beyond, 1)))
 
@@ -102,7 +93,7 @@ def battlements(whole: Region) -> float:
     """Counts the pieces of material at the top."""
     if not whole:
         return math.nan
-    left, bottom, right, top = region_bounds(whole)
+    left, bottom, right, top = whole.box
     height = 1e-3 * (top - bottom)
     low = top - _BELOW_TOP * (top - bottom) - height
     return float(len(common(whole, _band((left, right), low, height)).faces))
@@ -124,14 +115,14 @@ def fields(drawn: Regions) -> float:
     """
     faces = [face for region in drawn.visible for face in region.faces]
     least = (_SLIVER * drawn.size) ** 2
-    return float(sum(area(Region((face,))) > least for face in faces)) + openings(drawn.whole)
+    return float(sum(Region((face,)).area > least for face in faces)) + openings(drawn.whole)
 
 
 def contact(drawn: Regions) -> float:
     """Returns the distance between the two largest parts, as a share of the drawing's size: 0 where they
     touch, or where there is one part alone.
     """
-    large = sorted((part.region for part in drawn.parts), key=area, reverse=True)[:2]
+    large = sorted((part.region for part in drawn.parts), key=lambda region: region.area, reverse=True)[:2]
     if len(large) < 2:
         return 0.0 if large else math.nan
     closest = region_distance(*large)
@@ -142,8 +133,8 @@ def fullness(drawn: Regions) -> float:
     """Returns the share of its box that the silhouette covers."""
     if not drawn.whole:
         return math.nan
-    left, bottom, right, top = region_bounds(drawn.whole)
-    return area(drawn.whole) / ((right - left) * (top - bottom))
+    left, bottom, right, top = drawn.whole.box
+    return drawn.whole.area / ((right - left) * (top - bottom))
 
 
 def width_at(drawn: Regions, share: float) -> float:
@@ -152,12 +143,12 @@ def width_at(drawn: Regions, share: float) -> float:
     """
     if not drawn.whole:
         return math.nan
-    left, bottom, right, top = region_bounds(drawn.whole)
+    left, bottom, right, top = drawn.whole.box
     y = bottom + share * (top - bottom)
     met = common(drawn.whole, _band((left, right), y, 1e-3 * (top - bottom)))
     if not met:
         return 0.0
-    low, _, high, _ = region_bounds(met)
+    low, _, high, _ = met.box
     return (high - low) / (right - left)
 
 
@@ -223,5 +214,5 @@ def _band(across: tuple[float, float], low: float, height: float) -> Region:
 
 
 def _size(whole: Region) -> float:
-    left, bottom, right, top = region_bounds(whole)
+    left, bottom, right, top = whole.box
     return max(right - left, top - bottom)

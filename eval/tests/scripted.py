@@ -22,7 +22,7 @@ from aidl_eval.plan import VARIANTS
 from aidl_eval.regions import FINE, Regions, of_drawing
 from aidl_lang.common.source import SourceFile
 from aidl_lang.geometry.curves import Arc, Circle, union_bounds
-from aidl_lang.geometry.region import Loop, loop_points, region_bounds
+from aidl_lang.geometry.region import Loop
 from aidl_lang.pipeline import compile
 from eval.tests.asked import NAMES, TEXTS
 from tests.documents import ROOT
@@ -90,7 +90,7 @@ class Plain:
 def plain(name: str) -> Plain:
     """Returns the drawing for a prompt, with its numbers as they are written."""
     drawn = regions(name)
-    left, bottom, *_ = union_bounds([region_bounds(part.region) for part in drawn.parts])
+    left, bottom, *_ = union_bounds([part.region.box for part in drawn.parts])
     size = round(drawn.size, 2) + 0.003  # no whole number, which edits would keep whole
     radii = [d.radius for part in drawn.parts for loop in part.region.loops if (d := _disc(loop))]
     radius = round(max(radii), 2) + 0.003 if radii else None
@@ -104,7 +104,7 @@ def plain(name: str) -> Plain:
             return Disc(
                 share(*disc.center), radius if is_named and radius else round(disc.radius, 4), is_named
             )
-        return tuple(share(float(x), float(y)) for x, y in loop_points(loop, FINE * drawn.size))
+        return tuple(share(float(x), float(y)) for x, y in loop.polygon(FINE * drawn.size))
 
     parts = tuple(
         (part.color, tuple(Area(outline(f.outer), tuple(map(outline, f.holes))) for f in part.region.faces))

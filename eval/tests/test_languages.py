@@ -19,7 +19,6 @@ from aidl_eval.rendering import RenderedLanguage
 from aidl_eval.requirements import examine_regions
 from aidl_eval.whole import MEASURES
 from aidl_lang.common.source import SourceFile
-from aidl_lang.geometry.region import area
 from eval.tests import scripted
 from eval.tests.asked import NAMES, prompts
 from eval.tests.conftest import Evaluation
@@ -61,7 +60,7 @@ def neutral(found: Regions) -> NDArray[np.int64]:
 def compare(variant: str, name: str) -> None:
     """Compares the drawing of a prompt in a language with that in AIDL, which has lines besides."""
     found, there = drawn(variant, scripted.WRITERS[variant](name)), scripted.regions(name)
-    assert area(found.whole) == pytest.approx(area(there.whole), rel=2e-3)
+    assert found.whole.area == pytest.approx(there.whole.area, rel=2e-3)
     if variant not in ("no-hierarchy", "paper"):  # which have no colours
         assert colors(there) <= colors(found)
     skipped = {"contact", *TOUCHING.get(name, ())}

@@ -14,7 +14,6 @@ from aidl_eval import openscad, pictures, rendering
 from aidl_eval.openscad import OpenScad, knobs, parts, render, structures
 from aidl_eval.sandbox import fence
 from aidl_eval.shapes import PIXELS
-from aidl_lang.geometry.region import area, region_bounds
 
 needs_openscad = pytest.mark.skipif(OpenScad().missing() is not None, reason="openscad is not installed")
 
@@ -38,11 +37,11 @@ def test_knobs_are_the_plain_numbers_of_the_top_level() -> None:
 @needs_openscad
 def test_a_program_is_drawn_with_its_holes() -> None:
     drawn = render(PLATE).regions.whole
-    assert region_bounds(drawn) == pytest.approx((0, 0, 80, 40))
-    assert area(drawn) == pytest.approx(80 * 40 - 200)  # a square of diagonal 20 is cut out
+    assert drawn.box == pytest.approx((0, 0, 80, 40))
+    assert drawn.area == pytest.approx(80 * 40 - 200)  # a square of diagonal 20 is cut out
     assert [len(face.holes) for face in drawn.faces] == [1]
     wider = render(PLATE, {"width": 100.0}).regions.whole
-    assert region_bounds(wider)[2] == pytest.approx(100)
+    assert wider.box[2] == pytest.approx(100)
     with Image.open(io.BytesIO(pictures.colored(render(PLATE).regions))) as picture:
         pixels = np.asarray(picture.convert("RGB"))
     assert max(picture.size) == PIXELS
@@ -204,12 +203,12 @@ difference() { square(4); square(1); }
 @needs_openscad
 def test_what_stands_side_by_side_is_a_part_of_its_own() -> None:
     (drawn,) = OpenScad().run(PARTED)
-    areas = [area(part.region) for part in drawn.regions.parts]
+    areas = [part.region.area for part in drawn.regions.parts]
     assert areas[0] == pytest.approx(100)
     assert areas[3] == pytest.approx(15)
     assert [part.color for part in drawn.regions.parts] == ["#ff0000", None, None, None]
     (whole,) = OpenScad().run(PARTED, parted=False)
-    assert area(whole.regions.whole) == pytest.approx(area(drawn.regions.whole), rel=1e-4)
+    assert whole.regions.whole.area == pytest.approx(drawn.regions.whole.area, rel=1e-4)
 
 
 def test_a_tree_is_opened_down_to_its_shapes() -> None:

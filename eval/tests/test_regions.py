@@ -14,7 +14,6 @@ from aidl_eval import pictures
 from aidl_eval.regions import Regions, of_drawing, of_outlines
 from aidl_eval.whole import MEASURES
 from aidl_lang.common.source import SourceFile
-from aidl_lang.geometry.region import area
 from aidl_lang.pipeline import compile
 
 Shape = shapely.Polygon | shapely.MultiPolygon
@@ -46,7 +45,7 @@ def measured(name: str, drawn: Regions) -> float:
 
 def test_measures_agree_with_shapely() -> None:
     left, bottom, right, top = SILHOUETTE.bounds
-    assert area(CART.whole) == pytest.approx(SILHOUETTE.area, rel=1e-6)
+    assert CART.whole.area == pytest.approx(SILHOUETTE.area, rel=1e-6)
     assert measured("fullness", CART) == pytest.approx(
         SILHOUETTE.area / ((right - left) * (top - bottom)), rel=1e-6
     )
@@ -62,7 +61,7 @@ def test_measures_agree_with_shapely() -> None:
 
 
 def test_what_is_covered_is_not_seen() -> None:
-    seen = [area(region) for region in CART.visible]
+    seen = [region.area for region in CART.visible]
     assert seen[0] == pytest.approx(BODY.difference(shapely.union_all(WHEELS)).area, rel=1e-6)
     assert seen[1] == pytest.approx(WHEELS[0].area, rel=1e-6)
     assert measured("fields", CART) == 3
@@ -118,7 +117,7 @@ def test_aidl_is_taken_apart_into_bodies_and_what_they_are_united_of() -> None:
     assert compiled.model is not None
     assert compiled.drawing is not None
     drawn = of_drawing(compiled.model, compiled.drawing)
-    assert [(part.color, area(part.region)) for part in drawn.parts] == [
+    assert [(part.color, part.region.area) for part in drawn.parts] == [
         ("navy", pytest.approx(60 * 20)),
         ("navy", pytest.approx(400)),
         ("red", pytest.approx(np.pi * 64)),

@@ -22,7 +22,6 @@ from aidl_eval import rendering, sandboxed
 from aidl_eval.python_cad import PythonCad
 from aidl_eval.rendering import Rendered
 from aidl_eval.sandbox import fence
-from aidl_lang.geometry.region import area
 from tests.documents import ROOT
 
 FAKE = PythonCad("statistics")
@@ -359,7 +358,7 @@ def test_faces_are_read_with_their_holes_and_colours() -> None:
         "show_object(Face(box(70, 0, 2, 2)), 'name')\n"
     )
     drawn = run(program).regions
-    assert [(part.color, area(part.region)) for part in drawn.parts] == [
+    assert [(part.color, part.region.area) for part in drawn.parts] == [
         ("red", pytest.approx(600 - 16)),
         ("#0000ff", pytest.approx(100)),
         ("#0000ff", pytest.approx(100)),
@@ -407,7 +406,7 @@ def test_knobs_are_turned_where_they_are_written() -> None:
         SHAPES + "länge, breite = 0, 0\nbreite_1 = 10\nb = -2\nshow_object(Face(box(0, 0, breite_1, -b)))"
     )
     found = FAKE.run(program, [{}, {"breite_1": 12.0}, {"breite_1": 7.5, "b": -4.0}])
-    assert [area(r.regions.parts[0].region) for r in found] == [20, 24, 30]
+    assert [r.regions.parts[0].region.area for r in found] == [20, 24, 30]
 
 
 def test_without_a_library_it_says_so(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -7,7 +7,6 @@ import math
 import pytest
 
 from aidl_eval.svg import Svg, render
-from aidl_lang.geometry.region import area, region_bounds
 
 pytestmark = pytest.mark.skipif(Svg().missing() is not None, reason=str(Svg().missing()))
 
@@ -46,14 +45,14 @@ def drawing(inner: str, root: str = "") -> str:
 def test_what_is_painted_is_an_area(inner: str, covered: float, box: tuple[float, ...]) -> None:
     drawn = render(drawing(inner))
     assert drawn.errors == ()
-    assert area(drawn.regions.whole) == pytest.approx(covered, rel=0.01)
-    assert region_bounds(drawn.regions.whole) == pytest.approx(box, abs=0.02)
+    assert drawn.regions.whole.area == pytest.approx(covered, rel=0.01)
+    assert drawn.regions.whole.box == pytest.approx(box, abs=0.02)
 
 
 def test_parts_have_their_colours_and_their_order() -> None:
     drawn = render(drawing('<rect width="9" height="9" fill="navy"/><g fill="#f00"><circle r="3"/></g>'))
     assert [part.color for part in drawn.regions.parts] == ["#000080", "#ff0000"]
-    seen = [area(region) for region in drawn.regions.visible]
+    seen = [region.area for region in drawn.regions.visible]
     assert seen == pytest.approx([81 - 9 * math.pi / 4, 9 * math.pi], rel=0.01)
 
 

@@ -15,7 +15,7 @@ from ezdxf.layouts import Modelspace
 from shapely.geometry import LineString, MultiLineString
 
 from aidl_lang.common.drawings import OutlineFile, outlines
-from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, EllipseArc, Line, bounds
+from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, EllipseArc, Line
 from aidl_lang.geometry.faces import curve_of
 from aidl_lang.geometry.region import length
 
@@ -120,7 +120,7 @@ def test_blocks_stand_in_their_places_with_their_layers():
     assert set(found.parts) == {"cut", "marks", "row", "A", "B"}
     kinds = [type(curve_of(s)) for s in found.parts["cut"].strokes]
     assert kinds == [Circle, Ellipse]
-    assert bounds(curve_of(found.parts["B"].strokes[0])) == pytest.approx((8, 11, 12, 15))
+    assert curve_of(found.parts["B"].strokes[0]).box == pytest.approx((8, 11, 12, 15))
     assert found.parts["row"].box == pytest.approx((49, 49, 61, 51))
     assert found.whole.box == pytest.approx(flattened(document).bounds, abs=5e-3)
 

@@ -10,7 +10,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from aidl_lang.common.drawings import Bow, Stroke, as_curves, bow, box, furthest, mapped
-from aidl_lang.geometry.curves import Arc, Circle, Ellipse, EllipseArc, Line, Piece, bounds, points
+from aidl_lang.geometry.curves import Arc, Circle, Ellipse, EllipseArc, Line, Piece
 from aidl_lang.geometry.faces import curve_of
 from tests.amount import tries
 
@@ -80,8 +80,8 @@ def test_a_mapped_arc_is_the_exact_curve_in_place(stroke: Bow, matrix: Transform
     there = mapped(stroke, matrix)
     curve = curve_of(there)
     assert isinstance(curve, Arc | EllipseArc)
-    assert np.allclose(points(curve, PARAMETERS), sampled(there), atol=1e-6)
-    assert np.allclose(bounds(curve), box([there]), atol=1e-6)
+    assert np.allclose(curve.points(PARAMETERS), sampled(there), atol=1e-6)
+    assert np.allclose(curve.box, box([there]), atol=1e-6)
 
 
 def test_circles_stay_circles_under_similarities_alone():

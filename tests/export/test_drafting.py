@@ -16,7 +16,7 @@ from aidl_lang.export.drafting import Draft, drafted
 from aidl_lang.export.drafting.tables import SCALES, STANDARDS, papers
 from aidl_lang.export.job import ExportError, Job
 from aidl_lang.export.marks import Area, Curves, Group, Picture, Text
-from aidl_lang.geometry.curves import Circle, bounds
+from aidl_lang.geometry.curves import Circle
 from tests.documents import ROOT
 
 CAPITAL = 0.73
@@ -108,7 +108,7 @@ def test_everything_is_within_the_frame(text: str):
     for page in pages(text):
         (frame,) = next(g for g in page.groups if g.name == "frame").marks
         assert isinstance(frame, Curves)
-        boxes = [bounds(p) for p in frame.pieces]
+        boxes = [p.box for p in frame.pieces]
         left, bottom = min(b[0] for b in boxes), min(b[1] for b in boxes)
         right, top = max(b[2] for b in boxes), max(b[3] for b in boxes)
         for group in page.groups:
@@ -116,10 +116,10 @@ def test_everything_is_within_the_frame(text: str):
                 if isinstance(mark, Text):
                     found = [mark.box] if not mark.angle else [block(mark).box]
                 elif isinstance(mark, Area):
-                    found = [bounds(p) for loop in mark.face.loops for p in loop.pieces]
+                    found = [p.box for loop in mark.face.loops for p in loop.pieces]
                 else:
                     assert isinstance(mark, Curves)
-                    found = [bounds(p) for p in mark.pieces]
+                    found = [p.box for p in mark.pieces]
                 for x0, y0, x1, y1 in found:
                     assert left - 1e-6 <= x0 <= x1 <= right + 1e-6, (group.name, mark)
                     assert bottom - 1e-6 <= y0 <= y1 <= top + 1e-6, (group.name, mark)
@@ -279,7 +279,7 @@ def test_dimensions_by_hand_stand_where_they_are_asked_for():
     outline = next(
         m for g in page.groups if g.name.endswith("outline") for m in g.marks if isinstance(m, Area)
     )
-    boxes = [bounds(p) for p in outline.face.outer.pieces]
+    boxes = [p.box for p in outline.face.outer.pieces]
     right, top = max(b[2] for b in boxes), max(b[3] for b in boxes)
 
     def line_of(words: str) -> tuple[float, float, float, float]:
@@ -287,7 +287,7 @@ def test_dimensions_by_hand_stand_where_they_are_asked_for():
             g for g in dimension_groups(page) if any(words == getattr(m, "text", "") for m in g.marks)
         )
         mark = next(m for m in group.marks if isinstance(m, Curves) and m.role == "dimension")
-        return bounds(mark.pieces[0])
+        return mark.pieces[0].box
 
     assert line_of("50 h9 (0/-0.062)")[0] == pytest.approx(right + 12)
     # From the upper end of the edge.

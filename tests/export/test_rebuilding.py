@@ -22,7 +22,7 @@ from aidl_lang import pipeline
 from aidl_lang.common.source import SourceFile
 from aidl_lang.common.world import DiskWorld
 from aidl_lang.export.drafting.contents import View, contents
-from aidl_lang.geometry.curves import Arc, Circle, Line, Piece, Vec, bounds, derivative, ends, point
+from aidl_lang.geometry.curves import Arc, Circle, Line, Piece, Vec
 from aidl_lang.geometry.drawing import Body
 from aidl_lang.geometry.solved import Dimension, Length, Opening, Roundness
 from tests.documents import ROOT
@@ -70,7 +70,7 @@ class Part:
         """something is drawn that is as in the file"""
         self.known: set[int] = set()
         for side, end in enumerate(body.box):
-            if any(abs(box[side] - end) <= self.near for box in map(bounds, self.filed)):
+            if any(abs(box[side] - end) <= self.near for box in (piece.box for piece in self.filed)):
                 self.known.add(self.number(end))
                 self.levels[side % 2].insert(0, len(self.truth) - 1)
         self.box = body.box
@@ -141,8 +141,8 @@ class Part:
 
     def outline(self, pieces: list[Piece]) -> None:
         count = len(pieces)
-        corners = [self.pair(ends(p)[0]) for p in pieces]
-        self.points += [(pair, ends(p)[0]) for pair, p in zip(corners, pieces, strict=True)]
+        corners = [self.pair(p.ends[0]) for p in pieces]
+        self.points += [(pair, p.ends[0]) for pair, p in zip(corners, pieces, strict=True)]
         arcs: dict[int, tuple[Pair, int]] = {}
         for k, p in enumerate(pieces):
             if isinstance(p, Arc):
@@ -399,12 +399,12 @@ def on_line(p: Vec, line: Line, near: float) -> bool:
 
 
 def middle(piece: Piece) -> Vec:
-    x, y = point(piece, 0.5)
+    x, y = piece.point(0.5)
     return round(x, 6), round(y, 6)
 
 
 def smooth(a: Piece, b: Piece) -> bool:
-    u, v = derivative(a, 1.0), derivative(b, 0.0)
+    u, v = a.derivative(1.0), b.derivative(0.0)
     return abs(cross(u, v)) <= 1e-6 * math.hypot(*u) * math.hypot(*v) and dot(u, v) > 0
 
 
@@ -445,9 +445,9 @@ def joined(pieces: list[Piece]) -> list[Piece]:
 
 def keys(piece: Piece, flip: Callable[[Vec], Vec], near: float) -> Iterator[object]:
     """What tells a piece from others, in either direction, whatever rounding did."""
-    spots = [piece.center] if isinstance(piece, Circle) else [point(piece, t) for t in (0, 0.5, 1)]
+    spots = [piece.center] if isinstance(piece, Circle) else [piece.point(t) for t in (0, 0.5, 1)]
     flat = sorted(tuple(round(n / (200 * near)) for n in flip(p)) for p in spots)
-    yield type(piece).__name__, tuple(flat), round(bounds(piece)[2] - bounds(piece)[0], 3)
+    yield type(piece).__name__, tuple(flat), round(piece.box[2] - piece.box[0], 3)
 
 
 # --- Solving ---------------------------------------------------------------------------------------

@@ -11,7 +11,7 @@ from PIL import Image
 
 from aidl_lang.export.marks import Area, Curves, Dot, Frame, Group, Ink, Mark, Picture, Text, scaled
 from aidl_lang.export.pdf import to_png
-from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, EllipseArc, Line, Piece, point
+from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, EllipseArc, Line, Piece
 from aidl_lang.geometry.region import Face, Loop
 
 PIECES: tuple[Piece, ...] = (
@@ -39,8 +39,8 @@ def test_curves_keep_their_shape(piece: Piece) -> None:
     (mark,) = picture.groups[0].marks
     assert isinstance(mark, Curves)
     for k in range(9):
-        x, y = point(piece, k / 8)
-        assert point(mark.pieces[0], k / 8) == pytest.approx((4 * x, 4 * y))
+        x, y = piece.point(k / 8)
+        assert mark.pieces[0].point(k / 8) == pytest.approx((4 * x, 4 * y))
 
 
 def test_a_picture_of_any_size_becomes_the_same_pixels() -> None:

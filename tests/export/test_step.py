@@ -18,7 +18,7 @@ from aidl_lang.export import export
 from aidl_lang.export.job import ExportError, Job, Options
 from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, Line
 from aidl_lang.geometry.drawing import draw
-from aidl_lang.geometry.region import Face, Loop, Region, area
+from aidl_lang.geometry.region import Face, Loop, Region
 from aidl_lang.geometry.solved import SolvedGeometry, SolvedModel
 from tests.compiled import LIGHTER, compiled
 from tests.documents import ROOT
@@ -76,7 +76,7 @@ def test_every_kind_of_curve_is_exact(tmp_path: Path) -> None:
     assert part.surfaces["SurfaceOfExtrusion"] == 6  # bow, two rests of the left edge, top, eye, bite
     assert part.curves["Ellipse"] == 4
     assert part.curves["BSplineCurve"] == 8
-    assert part.volume == pytest.approx(2.5 * area(drawing.regions["s"]), rel=1e-9)
+    assert part.volume == pytest.approx(2.5 * drawing.regions["s"].area, rel=1e-9)
 
 
 # --- Several ---------------------------------------------------------------------------------------
@@ -315,7 +315,7 @@ def test_examples(path: Path, tmp_path: Path) -> None:
         assert part.is_closed
         assert part.count("SOLID") == len(body.region.faces)
         thickness = body.style.thickness or 3
-        assert part.volume == pytest.approx(thickness * area(body.region), rel=1e-9)
+        assert part.volume == pytest.approx(thickness * body.region.area, rel=1e-9)
         left, bottom, right, top = body.box
         assert part.bounds == pytest.approx((left, bottom, 0, right, top, thickness), abs=1e-5)
         # A top, a bottom, and a side for each piece of the outline.

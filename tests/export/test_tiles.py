@@ -17,7 +17,7 @@ from aidl_lang.export import export
 from aidl_lang.export.job import ExportError, Job, Options
 from aidl_lang.export.marks import Area, Curves, Dot, Group, Ink, Picture, Text
 from aidl_lang.export.picture import tiled
-from aidl_lang.geometry.curves import Circle, Line, Vec, point
+from aidl_lang.geometry.curves import Circle, Line, Vec
 from aidl_lang.geometry.drawing import draw
 from aidl_lang.geometry.region import Face, Loop
 from tests.amount import tries
@@ -66,7 +66,7 @@ def test_every_point_is_on_a_page(x, y, w, h, page, overlap):
     assert all((p.width, p.height) == pytest.approx(page) for p in found)
     for number, piece in enumerate((*lines, round_one)):
         for k in range(101):
-            px, py = point(piece, k / 100)
+            px, py = piece.point(k / 100)
             on = [
                 p
                 for p in found

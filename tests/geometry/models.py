@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from aidl_lang.common.source import Span
-from aidl_lang.geometry.curves import Arc, Circle, Curve, Line, Vec, bounds, union_bounds
+from aidl_lang.geometry.curves import Arc, Circle, Curve, Line, Vec, union_bounds
 from aidl_lang.geometry.solved import (
     Box,
     Frame,
@@ -62,7 +62,7 @@ def structure(
 ) -> SolvedStructure:
     geometry = tuple(m for m in members if isinstance(m, SolvedGeometry))
     children = tuple(m for m in members if isinstance(m, SolvedStructure))
-    boxes = [bounds(c) for g in geometry for c in g.curves()]
+    boxes = [c.box for g in geometry for c in g.curves()]
     boxes += [(c.box.left, c.box.bottom, c.box.right, c.box.top) for c in children if c.box]
     box = box or (Box(*union_bounds(boxes)) if boxes else None)
     frame = Frame(0.0, 0.0, 0.0)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from aidl_lang import pipeline
 from aidl_lang.common.source import SourceFile
-from aidl_lang.geometry.curves import Circle, points
+from aidl_lang.geometry.curves import Circle
 from aidl_lang.geometry.solved import SolvedGeometry
 
 FINE = 200_001
@@ -26,7 +26,7 @@ def solved(text: str) -> dict[str, SolvedGeometry]:
 
 def chords(way: SolvedGeometry) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Points of a curve, and its length up to each."""
-    spots = np.concatenate([points(c, np.linspace(0, 1, FINE)) for c in way.curves()])
+    spots = np.concatenate([c.points(np.linspace(0, 1, FINE)) for c in way.curves()])
     return spots, np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(spots, axis=0).T))])
 
 

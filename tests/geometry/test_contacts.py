@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from aidl_lang.geometry.boolean import ALL_PAIRS, Contact, piece_distance
-from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, Line, Piece, points
+from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, Line, Piece
 from aidl_lang.geometry.drawing import draw
 from aidl_lang.geometry.solved import SolvedGeometry
 from tests.geometry.models import arc, circle, model, structure
@@ -43,7 +43,7 @@ def test_distances_agree_with_a_fine_sampling(i: int, j: int):
     if i >= j:
         return
     ts = np.linspace(0, 1, 1501)
-    p, q = points(CURVES[i], ts), points(CURVES[j], ts)
+    p, q = CURVES[i].points(ts), CURVES[j].points(ts)
     sampled = min(float(np.hypot(*(q - row).T).min()) for row in p)
     found, a, b = piece_distance(CURVES[i], CURVES[j])
     assert found == pytest.approx(sampled, abs=1e-3)

@@ -10,8 +10,8 @@ from aidl_lang import pipeline
 from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.source import SourceFile
 from aidl_lang.common.world import MemoryWorld
-from aidl_lang.geometry.curves import Arc, Bezier, Circle, Line, ends
-from aidl_lang.geometry.region import Region, area
+from aidl_lang.geometry.curves import Arc, Bezier, Circle, Line
+from aidl_lang.geometry.region import Region
 from aidl_lang.pipeline import Compiled
 
 WEDGE = """\
@@ -43,7 +43,7 @@ def region(result: Compiled, path: str) -> Region:
 def assert_closed(found: Region) -> None:
     for loop in found.loops:
         for one, after in zip(loop.pieces, loop.pieces[1:] + loop.pieces[:1], strict=True):
-            assert loop.is_whole or ends(one)[1] == ends(after)[0]
+            assert loop.is_whole or one.ends[1] == after.ends[0]
 
 
 @pytest.mark.parametrize(
@@ -111,4 +111,4 @@ def test_overshooting_ends_are_trimmed_without_a_word():
         """
     )
     assert not notes(result)
-    assert area(region(result, "s")) == pytest.approx(400, abs=1e-2)
+    assert region(result, "s").area == pytest.approx(400, abs=1e-2)

@@ -9,19 +9,7 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from aidl_lang.geometry.curves import (
-    Bezier,
-    Circle,
-    Ellipse,
-    Line,
-    Piece,
-    Vec,
-    derivative,
-    locate,
-    point,
-    points,
-    second_derivative,
-)
+from aidl_lang.geometry.curves import Bezier, Circle, Ellipse, Line, Piece, Vec
 from aidl_lang.geometry.intersect import intersections
 from tests.amount import tries
 
@@ -38,7 +26,7 @@ ELLIPSE = st.builds(Ellipse, POINT, SIZE, SIZE, st.floats(0, 6).map(lambda x: ro
 def test_crossings_of_a_circle_are_where_the_distance_from_its_centre_passes_the_radius(
     curve: Piece, center: Vec, radius: float
 ) -> None:
-    spots = points(curve, np.linspace(0, 1, 4001))
+    spots = curve.points(np.linspace(0, 1, 4001))
     outside = np.hypot(*(spots - center).T) - radius
     assume(np.abs(outside).min() < 1)
     turns = outside[1:-1][(outside[1:-1] - outside[:-2]) * (outside[2:] - outside[1:-1]) <= 0]
@@ -49,14 +37,14 @@ def test_crossings_of_a_circle_are_where_the_distance_from_its_centre_passes_the
     assert len(found) == len(passes)
     for _, s, p in found:
         assert math.dist(p, center) - radius == pytest.approx(0, abs=1e-9)
-        assert point(curve, s) == p
+        assert curve.point(s) == p
 
 
 @tries(200)
 @given(BEZIER, st.floats(0.1, 0.9), SIZE, st.sampled_from([-1, 1]))
 def test_a_touch_is_found(curve: Bezier, t: float, size: float, side: int) -> None:
-    (x, y), (dx, dy) = point(curve, t), derivative(curve, t)
-    speed, (ax, ay) = math.hypot(dx, dy), second_derivative(curve, t)
+    (x, y), (dx, dy) = curve.point(t), curve.derivative(t)
+    speed, (ax, ay) = math.hypot(dx, dy), curve.second_derivative(t)
     assume(speed > 0.5)
     bend = (dx * ay - dy * ax) / speed**3
     assume(
@@ -73,9 +61,9 @@ def test_a_touch_is_found(curve: Bezier, t: float, size: float, side: int) -> No
 @tries(200)
 @given(BEZIER, st.floats(0, 1))
 def test_a_point_on_a_curve_is_located(curve: Bezier, t: float) -> None:
-    speeds = [math.hypot(*derivative(curve, k / 99)) for k in range(100)]
+    speeds = [math.hypot(*curve.derivative(k / 99)) for k in range(100)]
     assume(min(speeds) > 0.1 * max(speeds))  # near a cusp two stretches lie between two samples
-    p = point(curve, t)
-    found = locate(curve, p, TOLERANCE)
+    p = curve.point(t)
+    found = curve.locate(p, TOLERANCE)
     assert found is not None
-    assert math.dist(point(curve, found), p) <= TOLERANCE
+    assert math.dist(curve.point(found), p) <= TOLERANCE

@@ -12,7 +12,6 @@ from hypothesis import strategies as st
 import aidl_lang
 from aidl_lang import pipeline
 from aidl_lang.common.source import SourceFile
-from aidl_lang.geometry.curves import points
 from tests.amount import tries
 
 JOINED = """assembly t {{
@@ -86,7 +85,7 @@ def test_rivets_are_their_inset_within_an_outline(
     assert not compiled.errors
     assert compiled.model is not None
     found = {g.name: g for s in compiled.model.root.walk() for g in s.geometry}
-    rim = np.concatenate([points(c, np.linspace(0, 1, 4001)) for c in found["way"].curves()])
+    rim = np.concatenate([c.points(np.linspace(0, 1, 4001)) for c in found["way"].curves()])
     away = [
         float(np.hypot(*(rim - np.asarray(found[f"dot[{k}]"].values["center"])).T).min()) for k in range(n)
     ]

@@ -10,18 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from aidl_lang.geometry.curves import (
-    Arc,
-    Bezier,
-    Circle,
-    Ellipse,
-    EllipseArc,
-    Line,
-    Vec,
-    inward,
-    point,
-    points,
-)
+from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, EllipseArc, Line, Vec, inward
 from aidl_lang.geometry.region import Face, Loop, Region, measure
 from aidl_lang.geometry.survey import Inertia, inertia
 from tests.amount import tries
@@ -63,7 +52,7 @@ def test_ellipse_and_its_halves():
 def test_area_below_a_cubic():
     """A Bézier curve that is y = x³ − x² + 1 over 0..1: ∫∫ x² is 1/6 − 1/5 + 1/3, and so on."""
     curve = Bezier((1, 1), (2 / 3, 2 / 3), (1 / 3, 1), (0, 1))
-    assert point(curve, 0.5)[1] == pytest.approx(1 / 8 - 1 / 4 + 1)
+    assert curve.point(0.5)[1] == pytest.approx(1 / 8 - 1 / 4 + 1)
     loop = Loop((Line((0, 0), (1, 0)), Line((1, 0), (1, 1)), curve, Line((0, 1), (0, 0))))
     m, found = measure(Region((Face(loop),))), of(loop)
     x, y = m.centroid
@@ -122,7 +111,7 @@ def by_polygons(region: Region, count: int = 3000) -> NDArray[np.float64]:
     """Area, first and second moments about the origin of fine polygons: sums over triangles."""
     total = np.zeros(6)
     for loop in region.loops:
-        rows = np.concatenate([points(piece, np.linspace(0, 1, count + 1))[:-1] for piece in loop.pieces])
+        rows = np.concatenate([piece.points(np.linspace(0, 1, count + 1))[:-1] for piece in loop.pieces])
         (x, y), (u, v) = rows.T, np.roll(rows, -1, axis=0).T
         a = (x * v - u * y) / 2
         sums = (

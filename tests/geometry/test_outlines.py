@@ -12,24 +12,10 @@ import shapely
 from hypothesis import HealthCheck, assume, given
 from hypothesis import strategies as st
 
-from aidl_lang.geometry.curves import (
-    Arc,
-    Bezier,
-    Circle,
-    Ellipse,
-    Line,
-    Piece,
-    Vec,
-    bounds,
-    ends,
-    inward,
-    point,
-    points,
-    union_bounds,
-)
-from aidl_lang.geometry.finishing import Work, corners_of, direction, finish, fitted, sized
+from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, Line, Piece, Vec, inward, union_bounds
+from aidl_lang.geometry.finishing import Work, corners_of, finish, fitted, sized
 from aidl_lang.geometry.offsets import hull, offset, thick
-from aidl_lang.geometry.region import Face, Loop, Region, area, length, perimeter
+from aidl_lang.geometry.region import Face, Loop, Region, length
 from tests.amount import tries
 from tests.geometry.models import arc
 from tests.geometry.test_regions import assert_closed, pieces
@@ -52,7 +38,7 @@ def rounded(curves: Sequence[Piece], kind: str, size: float) -> list[Piece]:
 
 def enclosed(curves: Sequence[Piece]) -> float:
     """The area inside curves that make one chain, by a fine tessellation."""
-    lines = [shapely.LineString(np.round(points(c, np.linspace(0, 1, 2001)), 9)) for c in curves]
+    lines = [shapely.LineString(np.round(c.points(np.linspace(0, 1, 2001)), 9)) for c in curves]
     (face,) = shapely.get_parts(shapely.polygonize(lines))
     return float(face.area)
 
@@ -84,9 +70,9 @@ def test_fillets_of_arcs_are_tangent(first: tuple[float, float], r: float) -> No
     assert not made.failures
     for f in made.finished:
         for t, arm, cut in zip((0.0, 1.0), f.work.corner.arms, f.cuts, strict=True):
-            (ax, ay), (bx, by) = direction(f.piece, t), direction(arm.curve, cut)
+            (ax, ay), (bx, by) = f.piece.direction(t), arm.curve.direction(cut)
             assert ax * by - ay * bx == pytest.approx(0, abs=1e-9)
-            assert point(arm.curve, cut) == pytest.approx(ends(f.piece)[int(t)], abs=1e-9)
+            assert arm.curve.point(cut) == pytest.approx(f.piece.ends[int(t)], abs=1e-9)
 
 
 def test_fillets_of_free_curves_are_tangent() -> None:
@@ -100,9 +86,9 @@ def test_fillets_of_free_curves_are_tangent() -> None:
     for f in made.finished:
         assert isinstance(f.piece, Arc)
         for t, arm, cut in zip((0.0, 1.0), f.work.corner.arms, f.cuts, strict=True):
-            p = point(arm.curve, cut)
+            p = arm.curve.point(cut)
             assert math.dist(p, f.piece.center) == pytest.approx(2, abs=1e-9)
-            (ax, ay), (bx, by) = direction(f.piece, t), direction(arm.curve, cut)
+            (ax, ay), (bx, by) = f.piece.direction(t), arm.curve.direction(cut)
             assert ax * by - ay * bx == pytest.approx(0, abs=1e-9)
 
 
@@ -133,11 +119,11 @@ def test_offset_of_polygons_against_shapely(corners: list[Vec], distance: float,
         offset(polygon(corners), d, sharp=False),
         shapely.Polygon(corners).buffer(d, quad_segs=FINE),
     )
-    assert area(ours) == pytest.approx(theirs.area, abs=0.02)
+    assert ours.area == pytest.approx(theirs.area, abs=0.02)
     # Parts that just touch, or just do not, are told apart by less than the error of a circle of chords.
     near = [shapely.Polygon(corners).buffer(d + by, quad_segs=FINE) for by in (-2e-3, 0.0, 2e-3)]
     counts = [len(shapely.get_parts(each)) for each in near]
-    assert len(ours.faces) in counts or abs(theirs.area - area(ours)) < 1e-3
+    assert len(ours.faces) in counts or abs(theirs.area - ours.area) < 1e-3
     assert_closed(ours)
     assert all(isinstance(p, Line | Arc | Circle) for loop in ours.loops for p in loop.pieces)
 
@@ -148,10 +134,10 @@ def test_offset_of_a_convex_polygon_has_its_closed_form(a: float, b: float, d: f
     triangle = polygon([(0, 0), (a, 0), (0, b)])
     c = math.hypot(a, b)
     grown = offset(triangle, d, sharp=False)
-    assert area(grown) == pytest.approx(a * b / 2 + (a + b + c) * d + math.pi * d * d)
-    assert perimeter(grown) == pytest.approx(a + b + c + 2 * math.pi * d)
+    assert grown.area == pytest.approx(a * b / 2 + (a + b + c) * d + math.pi * d * d)
+    assert grown.perimeter == pytest.approx(a + b + c + 2 * math.pi * d)
     inradius = a * b / (a + b + c)
-    assert area(offset(triangle, d)) == pytest.approx(a * b / 2 * ((inradius + d) / inradius) ** 2)
+    assert offset(triangle, d).area == pytest.approx(a * b / 2 * ((inradius + d) / inradius) ** 2)
 
 
 @pytest.mark.parametrize(
@@ -161,13 +147,11 @@ def test_offset_of_an_ellipse_keeps_its_distance(d: float) -> None:
     """Also where it bends closer than the distance (the least radius of curvature is 13.3)."""
     ellipse = Region((Face(Loop((Ellipse((3, 1), 30, 20, 0.4),))),))
     ours = offset(ellipse, d)
-    outline = shapely.LinearRing(points(Ellipse((3, 1), 30, 20, 0.4), np.linspace(0, 1, 40001)[:-1]))
-    for p in (
-        q for loop in ours.loops for piece in loop.pieces for q in points(piece, np.linspace(0, 1, 41))
-    ):
+    outline = shapely.LinearRing(Ellipse((3, 1), 30, 20, 0.4).points(np.linspace(0, 1, 40001)[:-1]))
+    for p in (q for loop in ours.loops for piece in loop.pieces for q in piece.points(np.linspace(0, 1, 41))):
         assert outline.distance(shapely.Point(p)) == pytest.approx(abs(d), abs=1e-3)
     theirs = shapely.Polygon(outline).buffer(d, quad_segs=FINE)
-    assert area(ours) == pytest.approx(theirs.area, rel=2e-5, abs=0.01)
+    assert ours.area == pytest.approx(theirs.area, rel=2e-5, abs=0.01)
 
 
 @tries(40)
@@ -178,7 +162,7 @@ def test_the_largest_fillet_of_a_polygon(corners: list[Vec]) -> None:
     works = [Work("fillet", c, (0.0, 0.0)) for c in corners_of(lines, 1e-6)]
     assume(len(works) == len(lines))
     shares = {c.corner.at: 1 / math.tan(abs(c.corner.turn) / 2) for c in works}
-    most = min(math.dist(p, q) / (shares[p] + shares[q]) for p, q in map(ends, lines))
+    most = min(math.dist(p, q) / (shares[p] + shares[q]) for p, q in (line.ends for line in lines))
     made = fitted(lines, works, [1] * len(works), 100.0)
     assert made[0].sizes[0] == pytest.approx(most, rel=1e-6)
     assert not finish(lines, made).failures
@@ -204,16 +188,16 @@ def test_strokes_against_shapely(way: list[Vec], width: float, caps: str) -> Non
         width / 2, quad_segs=FINE, cap_style={"butt": "flat"}.get(caps, caps)
     )
     ours = thick(lines, width, caps)
-    assert area(ours) == pytest.approx(theirs.area, abs=0.02)
+    assert ours.area == pytest.approx(theirs.area, abs=0.02)
     assert_closed(ours)
 
 
 def test_stroke_of_an_arc_wider_than_its_radius() -> None:
     """Without caps it is half a disc of radius 5."""
     bow = [arc((0, 0), 2, 0, 180)]
-    assert area(thick(bow, 6, "butt")) == pytest.approx(math.pi * 25 / 2)
-    theirs = shapely.LineString(points(bow[0], np.linspace(0, 1, 4001))).buffer(3, quad_segs=FINE)
-    assert area(thick(bow, 6)) == pytest.approx(theirs.area, rel=1e-4)
+    assert thick(bow, 6, "butt").area == pytest.approx(math.pi * 25 / 2)
+    theirs = shapely.LineString(bow[0].points(np.linspace(0, 1, 4001))).buffer(3, quad_segs=FINE)
+    assert thick(bow, 6).area == pytest.approx(theirs.area, rel=1e-4)
 
 
 @pytest.mark.parametrize(
@@ -226,10 +210,10 @@ def test_stroke_of_an_arc_wider_than_its_radius() -> None:
 )
 def test_stroke_of_a_free_curve_has_its_box_moved_out(curve: Piece) -> None:
     """Parallel curves are fitted, yet true where they are level or upright."""
-    fine = points(curve, np.linspace(0, 1, 400_001))
+    fine = curve.points(np.linspace(0, 1, 400_001))
     ours = thick([curve], 5).faces[0].outer.pieces
     theirs = [*(fine.min(axis=0) - 2.5), *(fine.max(axis=0) + 2.5)]
-    assert union_bounds([bounds(p) for p in ours]) == pytest.approx(tuple(theirs), abs=1e-8)
+    assert union_bounds([p.box for p in ours]) == pytest.approx(tuple(theirs), abs=1e-8)
 
 
 # --- Hulls and clips -----------------------------------------------------------------------------------
@@ -251,10 +235,10 @@ curves = st.one_of(
 def test_hulls_against_shapely(drawn: list[Piece]) -> None:
     # Of a line its ends, and no two points that all but coincide: among such GEOS loses corners.
     counts = [2 if isinstance(c, Line) else 2001 for c in drawn]
-    spots = np.concatenate([points(c, np.linspace(0, 1, n)) for c, n in zip(drawn, counts, strict=True)])
+    spots = np.concatenate([c.points(np.linspace(0, 1, n)) for c, n in zip(drawn, counts, strict=True)])
     theirs = shapely.convex_hull(shapely.MultiPoint(np.unique(np.round(spots, 5), axis=0)))
     ours = hull(drawn)
-    assert area(ours) == pytest.approx(theirs.area, rel=1e-4, abs=5e-3)
+    assert ours.area == pytest.approx(theirs.area, rel=1e-4, abs=5e-3)
     assert_closed(ours)
 
 
@@ -264,7 +248,7 @@ def test_hull_of_two_circles_has_its_closed_form(a: float, b: float, d: float) -
     ours = hull([Circle((0, 0), a), Circle((d, 0), b)])
     tangent, lean = math.sqrt(d * d - (a - b) ** 2), math.asin((a - b) / d)
     expected = (a + b) * tangent + a * a * (math.pi / 2 + lean) + b * b * (math.pi / 2 - lean)
-    assert area(ours) == pytest.approx(expected, rel=1e-12)
+    assert ours.area == pytest.approx(expected, rel=1e-12)
     assert len(pieces(ours, Arc)) == 2
 
 
@@ -285,9 +269,9 @@ def test_hull_of_two_circles_has_its_closed_form(a: float, b: float, d: float) -
 def test_curves_in_another_frame(curve: Piece, mirrored: bool) -> None:
     """The points of the curve in the frame are those of the curve, one by one turned and reflected back."""
     ts = np.linspace(0, 1, 4001)
-    (x, y), c, s = (points(curve, ts) - (7, -2)).T, math.cos(0.7), math.sin(0.7)
+    (x, y), c, s = (curve.points(ts) - (7, -2)).T, math.cos(0.7), math.sin(0.7)
     expected = shapely.LineString(
         np.stack(((-1 if mirrored else 1) * (c * x + s * y), c * y - s * x), axis=1)
     )
-    ours = points(inward(curve, (7, -2), math.degrees(0.7), mirrored), np.linspace(0, 1, 200))
+    ours = inward(curve, (7, -2), math.degrees(0.7), mirrored).points(np.linspace(0, 1, 200))
     assert max(expected.distance(shapely.Point(p)) for p in ours) < 1e-5

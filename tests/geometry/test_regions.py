@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from shapely.geometry import Polygon
 
-from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, EllipseArc, Line, ends, points
+from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, EllipseArc, Line
 from aidl_lang.geometry.drawing import Drawing, draw
 from aidl_lang.geometry.region import Loop, Region, measure
 from aidl_lang.geometry.solved import SolvedGeometry, SolvedStructure
@@ -36,7 +36,7 @@ def pieces(region: Region, kind: type) -> list[object]:
 
 
 def flattened(loop: Loop, count: int = 400) -> Polygon:
-    rows = [points(p, np.linspace(0, 1, 2 if isinstance(p, Line) else count))[:-1] for p in loop.pieces]
+    rows = [p.points(np.linspace(0, 1, 2 if isinstance(p, Line) else count))[:-1] for p in loop.pieces]
     return Polygon(np.concatenate(rows))
 
 
@@ -56,7 +56,7 @@ def assert_closed(region: Region) -> None:
     for loop in region.loops:
         if not loop.is_whole:
             for one, after in zip(loop.pieces, loop.pieces[1:] + loop.pieces[:1], strict=True):
-                assert ends(one)[1] == ends(after)[0]
+                assert one.ends[1] == after.ends[0]
 
 
 def test_ellipses_and_beziers_are_split_exactly():

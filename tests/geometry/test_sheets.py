@@ -12,9 +12,8 @@ from hypothesis import strategies as st
 from shapely.geometry import Polygon, box
 
 from aidl_lang.geometry import sheets
-from aidl_lang.geometry.curves import Circle, Line, Piece, ends, point
+from aidl_lang.geometry.curves import Circle, Line, Piece
 from aidl_lang.geometry.drawing import Body, Drawing, draw
-from aidl_lang.geometry.region import area, face_polygons
 from aidl_lang.geometry.sheets import Layout
 from aidl_lang.geometry.solved import SolvedStructure
 from tests.amount import tries
@@ -39,7 +38,7 @@ def laid_out(
 def shape(body: Body) -> Polygon:
     """Close to the body: its vertices lie on the outline."""
     (face,) = body.region.faces
-    outer, *holes = face_polygons(face, 1e-3)
+    outer, *holes = face.polygons(1e-3)
     return Polygon(outer, holes)
 
 
@@ -48,7 +47,7 @@ def numbers(pieces: list[Piece]) -> list[complex]:
     spots = [
         p
         for piece in pieces
-        for p in ([piece.center] if isinstance(piece, Circle) else [*ends(piece), point(piece, 0.5)])
+        for p in ([piece.center] if isinstance(piece, Circle) else [*piece.ends, piece.point(0.5)])
     ]
     return [complex(*p) for p in spots]
 
@@ -83,7 +82,7 @@ def check(drawing: Drawing, layout: Layout, sheet: tuple[float, float], spacing:
             assert list(map(type, old)) == list(map(type, new))
             factor, _ = motion(numbers(old), numbers(new))
             assert min(abs(factor - 1j**k) for k in range(4)) < 1e-9  # turned by quarters; no mirror
-            assert area(body.region) == pytest.approx(area(before[body.path].region), rel=1e-12)
+            assert body.region.area == pytest.approx(before[body.path].region.area, rel=1e-12)
 
 
 @st.composite
@@ -186,11 +185,11 @@ def test_a_drawing_over_several_parts_is_cut_where_they_end():
     a, b = plate("a", 40, 20), plate("b", 30, 20, 60)
     drawing = drawing_of(a, b, line("across", -10, 5, 100, 5))
     layout = laid_out(drawing, (100, 100), 5)
-    lengths = sorted(math.dist(*ends(p)) for d in layout.sheets for s in d.strokes for p in s.pieces)
+    lengths = sorted(math.dist(*p.ends) for d in layout.sheets for s in d.strokes for p in s.pieces)
     assert lengths == pytest.approx([30, 40])
     (stray,) = layout.strays
     assert stray.geometry == "part.across.l"
-    off = sorted(tuple(sorted(x for x, _ in ends(p))) for p in stray.pieces)
+    off = sorted(tuple(sorted(x for x, _ in p.ends)) for p in stray.pieces)
     assert off == [pytest.approx(r) for r in ((-10, 0), (40, 60), (90, 100))]
 
 
@@ -204,8 +203,8 @@ def test_of_overlapping_parts_the_one_that_has_most_is_engraved():
         (stroke,) = laid.strokes
         (piece,) = stroke.pieces
         wide = next(body for body in laid.bodies if body.path == "part.b")
-        assert math.dist(*ends(piece)) == pytest.approx(50)
-        assert ends(piece)[0][0] - wide.box[0] == pytest.approx(5)
+        assert math.dist(*piece.ends) == pytest.approx(50)
+        assert piece.ends[0][0] - wide.box[0] == pytest.approx(5)
         assert layout.strays == ()
 
 

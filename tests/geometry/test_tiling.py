@@ -13,7 +13,7 @@ from shapely import affinity
 
 from aidl_lang.geometry.boolean import clipped_each
 from aidl_lang.geometry.curves import Circle, Line, Piece, Vec
-from aidl_lang.geometry.region import Face, Loop, Region, area, length
+from aidl_lang.geometry.region import Face, Loop, Region, length
 from aidl_lang.geometry.tiling import (
     MOST,
     Lattice,
@@ -82,19 +82,19 @@ def test_areas_are_those_of_copies_cut_one_by_one(corners: list[Vec], lattice: L
     copies = [affinity.translate(cell, *way) for way in places(lattice, 80)]
     wanted = shapely.unary_union(copies).intersection(star)
     found = tiled_areas(rectangle(size, size), polygon(corners), lattice, whole=False)
-    assert area(found) == pytest.approx(wanted.area, abs=1e-5)
+    assert found.area == pytest.approx(wanted.area, abs=1e-5)
     whole = tiled_areas(rectangle(size, size), polygon(corners), lattice, whole=True)
     inside = [c for c in copies if star.covers(c)]
     near = [c for c in copies if star.buffer(1e-6).covers(c)]
     low, high = (shapely.unary_union(some).area for some in (inside, near))
-    assert low - 1e-5 <= area(whole) <= high + 1e-5
+    assert low - 1e-5 <= whole.area <= high + 1e-5
 
 
 def test_areas_that_overlap_are_one() -> None:
     """Discs of radius 6, 10 apart, as far as they lie in a strip through their centres."""
     strip = polygon([(-5, -1), (95, -1), (95, 1), (-5, 1)])
     found = tiled_areas(disc(6), strip, Lattice((10, 0)), whole=False)
-    assert area(found) == pytest.approx(200, rel=1e-9)
+    assert found.area == pytest.approx(200, rel=1e-9)
     assert len(found.faces) == 1
 
 
@@ -142,7 +142,7 @@ def test_bars_have_the_area_of_their_closed_form() -> None:
     """Nets leave squares: of each pitch² cell (pitch − width)² is open."""
     cell = [Line((0, 0), (5, 0)), Line((0, 0), (0, 5))]
     found = tiled_bars(cell, rectangle(50, 30), Lattice((5, 0), (0, 5)), 1)
-    assert area(found) == pytest.approx(1500 - 60 * 16, rel=1e-9)
+    assert found.area == pytest.approx(1500 - 60 * 16, rel=1e-9)
     assert len(found.faces) == 1
     assert len(found.faces[0].holes) == 60
 
@@ -155,7 +155,7 @@ def test_ten_thousand_copies_are_made_and_no_more() -> None:
     assert len(found.faces) == 98 * 98
     with pytest.raises(TooManyCopiesError) as many:
         tiled_areas(disc(0.4), rectangle(200, 99), Lattice((1, 0), (0, 1)), whole=True)
-    assert many.value.count > MOST
+    assert many.value.args[0] > MOST
 
 
 @pytest.mark.parametrize("row", [(2.0, 0.0), (0.0, 0.0)])

@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from shapely.geometry import Polygon
 
-from aidl_lang.geometry.curves import Bezier, Circle, Ellipse, Line, nearest, point
+from aidl_lang.geometry.curves import Bezier, Circle, Ellipse, Line
 from aidl_lang.geometry.region import Face, Loop, Region
 from aidl_lang.geometry.solved import SolvedGeometry, SolvedStructure
 from aidl_lang.geometry.walls import Widths, thin_wall, widths
@@ -41,7 +41,7 @@ def check_places(region: Region, found: Widths) -> None:
         if chord is not None:
             assert math.dist(chord.a, chord.b) == pytest.approx(chord.length, rel=1e-9, abs=1e-12)
             for end in (chord.a, chord.b):
-                assert min(math.dist(point(p, nearest(p, end)), end) for p in pieces) < 1e-6
+                assert min(math.dist(p.point(p.nearest(end)), end) for p in pieces) < 1e-6
 
 
 COMB = (

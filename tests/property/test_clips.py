@@ -11,9 +11,9 @@ from hypothesis import strategies as st
 from aidl_lang import pipeline
 from aidl_lang.common.source import SourceFile
 from aidl_lang.common.world import MemoryWorld
-from aidl_lang.geometry.curves import Piece, points
+from aidl_lang.geometry.curves import Piece
 from aidl_lang.geometry.drawing import Drawing
-from aidl_lang.geometry.region import Loop, Region, area
+from aidl_lang.geometry.region import Loop, Region
 from tests.amount import tries
 
 CHORDS = 400
@@ -50,7 +50,7 @@ def drawing_of(text: str) -> Drawing:
 
 
 def flat(piece: Piece) -> np.ndarray:
-    return points(piece, np.linspace(0, 1, CHORDS))
+    return piece.points(np.linspace(0, 1, CHORDS))
 
 
 def polygon(loop: Loop) -> shapely.Geometry:
@@ -95,7 +95,7 @@ def test_what_is_clipped_is_what_it_was_inside_the_outline(
         expected = area_of(whole.regions.get(path, Region())).intersection(pane)
         found = area_of(clipped.regions.get(path, Region()))
         assert found.symmetric_difference(expected).area <= CLOSE * pane.area
-        own, twin = (area(clipped.regions.get(f"view.{of}.{name}", Region())) for of in ("scene", "twin"))
+        own, twin = (clipped.regions.get(f"view.{of}.{name}", Region()).area for of in ("scene", "twin"))
         assert twin == pytest.approx(own, rel=1e-6, abs=1e-6)
     ink, all_ink = ink_of(clipped), ink_of(whole)
     own = all_ink.intersection(pane)

@@ -17,10 +17,10 @@ from hypothesis import Phase, example, given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from aidl_lang.geometry.boolean import common, overlap_area, united, without
-from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, EllipseArc, Line, Piece, Vec, ends, points
+from aidl_lang.geometry.boolean import common, united, without
+from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, EllipseArc, Line, Piece, Vec
 from aidl_lang.geometry.drawing import draw
-from aidl_lang.geometry.region import Face, Loop, Region, area, length, loop_area, perimeter, region_bounds
+from aidl_lang.geometry.region import Face, Loop, Region, length
 from aidl_lang.geometry.solved import SolvedStructure
 from tests.amount import tries
 from tests.geometry.models import compound, model, structure
@@ -116,7 +116,7 @@ def region_of(shapes: Sequence[Shape]) -> Region:
 
 def tessellated(shape: Shape) -> NDArray[np.float64]:
     ts = np.linspace(0, 1, CHORDS + 1)
-    return np.concatenate([points(p, ts[[0, -1]] if isinstance(p, Line) else ts)[:-1] for p in shape])
+    return np.concatenate([p.points(ts[[0, -1]] if isinstance(p, Line) else ts)[:-1] for p in shape])
 
 
 def error(shapes: Sequence[Shape]) -> float:
@@ -147,7 +147,7 @@ def as_manifold(shapes: Sequence[Shape]) -> manifold3d.CrossSection:
 
 
 def extent(*regions: Region) -> float:
-    boxes = [region_bounds(r) for r in regions if r]
+    boxes = [r.box for r in regions if r]
     return max((max(b[2] - b[0], b[3] - b[1]) for b in boxes), default=1.0)
 
 
@@ -196,15 +196,15 @@ def assert_exact(region: Region, shapes: Sequence[Shape]) -> None:
     for loop in region.loops:
         assert loop.is_whole or len(loop.pieces) > 1
         for one, after in zip(loop.pieces, loop.pieces[1:] + loop.pieces[:1], strict=True):
-            assert loop.is_whole or ends(one)[1] == ends(after)[0]
+            assert loop.is_whole or one.ends[1] == after.ends[0]
             assert length(one) > 1e-6 * size
             same = [c for c in inputs if _is_part_of(one, c)]
             assert same, f"nothing of the kind of {one} was drawn"
-            away = min(float(off_carrier(points(one, ts), curve).max()) for curve in same)
+            away = min(float(off_carrier(one.points(ts), curve).max()) for curve in same)
             assert away <= EXACT * size, f"{one} is {away} off"
     for face in region.faces:
-        assert loop_area(face.outer) > 0
-        assert all(loop_area(hole) < 0 for hole in face.holes)
+        assert face.outer.area > 0
+        assert all(hole.area < 0 for hole in face.holes)
     assert sum(len(loop.pieces) for loop in region.loops) <= most_pieces(shapes)
 
 
@@ -227,18 +227,18 @@ def form(region: Region) -> tuple[int, int]:
 def check_laws(one: Sequence[Shape], other: Sequence[Shape]) -> None:
     a, b = region_of(one), region_of(other)
     both, shared, rest = united(a, b), common(a, b), without(a, b)
-    scale = area(a) + area(b)
-    assert same_area(area(both) + area(shared), scale, scale)
-    assert same_area(area(rest) + area(shared), area(a), scale)
-    assert same_area(area(united(rest, shared)), area(a), scale)
-    assert same_area(overlap_area(rest, b), 0, scale)
+    scale = a.area + b.area
+    assert same_area(both.area + shared.area, scale, scale)
+    assert same_area(rest.area + shared.area, a.area, scale)
+    assert same_area(united(rest, shared).area, a.area, scale)
+    assert same_area(common(rest, b).area, 0, scale)
     for region in (both, shared, rest):
         assert_exact(region, [*one, *other])
 
 
 def check_polygons(one: Sequence[Shape], other: Sequence[Shape]) -> None:
     a, b = region_of(one), region_of(other)
-    slack = error([*one, *other]) + 1e-6 * extent(a, b) * (perimeter(a) + perimeter(b))
+    slack = error([*one, *other]) + 1e-6 * extent(a, b) * (a.perimeter + b.perimeter)
     p, q = as_shapely(one), as_shapely(other)
     m, n = as_manifold(one), as_manifold(other)
     for region, expected, section in (
@@ -246,8 +246,8 @@ def check_polygons(one: Sequence[Shape], other: Sequence[Shape]) -> None:
         (common(a, b), shapely.intersection(p, q, grid_size=GRID), m ^ n),
         (without(a, b), shapely.difference(p, q, grid_size=GRID), m - n),
     ):
-        assert abs(area(region) - expected.area) <= slack
-        assert abs(area(region) - section.area()) <= slack
+        assert abs(region.area - expected.area) <= slack
+        assert abs(region.area - section.area()) <= slack
 
 
 @profile
@@ -275,15 +275,15 @@ def test_areas_agree_with_polygons(one: list[Shape], other: list[Shape]):
 @given(any_shape, any_shape, any_shape)
 def test_union_takes_any_order(one: Shape, other: Shape, third: Shape):
     a, b, c = (region_of([s]) for s in (one, other, third))
-    scale = area(a) + area(b) + area(c)
+    scale = a.area + b.area + c.area
     ab, ba = united(a, b), united(b, a)
     assert form(ab) == form(ba)
-    assert same_area(area(ab), area(ba), scale)
+    assert same_area(ab.area, ba.area, scale)
     left, right = united(ab, c), united(a, united(b, c))
     assert form(left) == form(right)
-    assert same_area(area(left), area(right), scale)
+    assert same_area(left.area, right.area, scale)
     assert form(united(left, left)) == form(left)
-    assert same_area(area(united(left, left)), area(left), scale)
+    assert same_area(united(left, left).area, left.area, scale)
     assert not without(left, right)
 
 
@@ -307,7 +307,7 @@ def test_nested_structures_agree_with_polygons(solid: list[Shape], holes: list[t
     cut = shapely.difference(as_shapely(solid), as_shapely([rim for rim, _ in holes]), grid_size=GRID)
     expected = shapely.union(cut, as_shapely(islands), grid_size=GRID)
     slack = error(everything) + 2e-6 * sum(length(p) for s in everything for p in s) * 20
-    assert abs(area(found) - expected.area) <= slack
+    assert abs(found.area - expected.area) <= slack
     assert_exact(found, everything)
 
 
@@ -323,7 +323,7 @@ def test_a_plate_with_a_hole_that_a_second_circle_cuts_into(r: float, q: float, 
     alpha = math.acos((d * d + r * r - q * q) / (2 * d * r))
     beta = math.acos((d * d + q * q - r * r) / (2 * d * q))
     lens = r * r * (alpha - math.sin(2 * alpha) / 2) + q * q * (beta - math.sin(2 * beta) / 2)
-    assert area(cut) == pytest.approx(300**2 - math.pi * (r * r + q * q) + lens, rel=1e-12)
+    assert cut.area == pytest.approx(300**2 - math.pi * (r * r + q * q) + lens, rel=1e-12)
     (hole,) = cut.faces[0].holes
     assert {(p.radius) for p in hole.pieces if isinstance(p, Arc)} == {r, q}
     assert len(hole.pieces) == 2

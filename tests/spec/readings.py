@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import TypeAlias
 
-from aidl_lang.geometry.curves import Arc, Line, Vec, bounds
+from aidl_lang.geometry.curves import Arc, Line, Vec
 from aidl_lang.geometry.solved import Box, SolvedGeometry, SolvedStructure
 from aidl_lang.pipeline import Compiled
 
@@ -187,7 +187,7 @@ def _derived(g: SolvedGeometry, name: str) -> Value | None:
 
 def box_of(geometry: Iterable[SolvedGeometry]) -> Box | None:
     """The tight box of the drawn curves."""
-    found = [bounds(curve) for g in geometry for curve in g.curves()]
+    found = [curve.box for g in geometry for curve in g.curves()]
     if not found:
         return None
     left, bottom, right, top = zip(*found, strict=True)

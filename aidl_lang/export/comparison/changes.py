@@ -15,7 +15,7 @@ from aidl_lang.common.prose import rounded
 from aidl_lang.common.records import record
 from aidl_lang.export.json import Json, contact
 from aidl_lang.geometry.boolean import Contact
-from aidl_lang.geometry.curves import FIELDS, Arc, Circle, Ellipse, Vec, point
+from aidl_lang.geometry.curves import FIELDS, Arc, Circle, Ellipse, Vec
 from aidl_lang.geometry.drawing import Drawing
 from aidl_lang.geometry.solved import Scalar, SolvedGeometry, SolvedModel
 
@@ -198,7 +198,7 @@ def _places(g: SolvedGeometry) -> list[Vec]:
         at = g.values.get("at")
         return [] if at is None else [at]  # type: ignore[list-item]
     found = [getattr(g.curve, name) for name in FIELDS[type(g.curve)]]
-    middle = [point(g.curve, 0.5)] if isinstance(g.curve, Arc) else []
+    middle = [g.curve.point(0.5)] if isinstance(g.curve, Arc) else []
     return [each for each in found if isinstance(each, tuple)] + middle
 
 

@@ -26,11 +26,11 @@ from aidl_lang.export.marks import (
     polygon,
     widened,
 )
-from aidl_lang.geometry.curves import Bounds, Line, Piece, Vec, larger_side, point, union_bounds
+from aidl_lang.geometry.curves import Bounds, Line, Piece, Vec, larger_side, union_bounds
 from aidl_lang.geometry.drawing import Stroke
 from aidl_lang.geometry.network import Network, with_finer_chords
-from aidl_lang.geometry.region import Face, Region, area, face_polygons, measure
-from aidl_lang.geometry.sections import difference, filled, intersection, trace_all, union
+from aidl_lang.geometry.region import Face, Region, measure
+from aidl_lang.geometry.sections import filled, trace_all, union
 
 FILLS = {"both": "#cfd4db", "before": "#fbe3c0", "after": "#6db6e8"}
 INKS = {"both": "#64748b", "before": "#c2500a", "after": "#0b3c5d"}
@@ -61,18 +61,17 @@ def parts(before: Sequence[Region], after: Sequence[Region]) -> dict[str, Region
     pieces = [p for region in (*before, *after) for loop in region.loops for p in loop.pieces]
     if not pieces:
         return dict.fromkeys(FILLS, Region())
-    network = Network(pieces)
 
-    def traced() -> list[Region]:
+    def traced(network: Network) -> list[Region]:
         sections, number = [], 0
         for region in (*before, *after):
             sections.append(filled(network, [loop.pieces for loop in region.loops], number))
             number += sum(len(loop.pieces) for loop in region.loops)
         first, last = union(sections[: len(before)]), union(sections[len(before) :])
-        wanted = [intersection(first, last), difference(first, last), difference(last, first)]
+        wanted = [first & last, first - last, last - first]
         return [outline.region for outline in trace_all(network, wanted)]
 
-    return dict(zip(FILLS, with_finer_chords(network, traced), strict=True))
+    return dict(zip(FILLS, with_finer_chords(Network(pieces), traced), strict=True))
 
 
 def _box(*versions: Version) -> Bounds:
@@ -98,7 +97,7 @@ def _filled(name: str, region: Region, size: float) -> Iterator[Mark]:
 def _hatch(face: Face, step: float) -> list[Piece]:
     """Returns lines at 45° inside a face, at the same places in every face."""
     turn = np.array([[1.0, 1.0], [-1.0, 1.0]]) / math.sqrt(2)
-    polygons = [polygon @ turn.T for polygon in face_polygons(face, step / 50)]
+    polygons = [polygon @ turn.T for polygon in face.polygons(step / 50)]
     start = np.concatenate(polygons)
     end = np.concatenate([np.roll(polygon, -1, axis=0) for polygon in polygons])
     lines: list[Piece] = []
@@ -137,7 +136,7 @@ def _shared_strokes(comparison: Comparison) -> set[Stroke]:
 
 def _coincide(a: Sequence[Piece], b: Sequence[Piece], tolerance: float) -> bool:
     return len(a) == len(b) and all(
-        math.dist(point(p, t), point(q, t)) <= tolerance
+        math.dist(p.point(t), q.point(t)) <= tolerance
         for p, q in zip(a, b, strict=True)
         for t in (0.0, 0.25, 0.5, 0.75, 1.0)
     )
@@ -182,7 +181,7 @@ def _legend(regions: dict[str, Region], box: Bounds, size: float) -> tuple[tuple
         marks += _filled(name, Region((swatch,)), size)
         marks.append(Area(swatch, None, _ink(name, size)))
         label = Text(
-            (left + 2.6 * text, top - 0.85 * text), f"{NAMES[name]}: {area(region):.5g} mm²", text, INKS[name]
+            (left + 2.6 * text, top - 0.85 * text), f"{NAMES[name]}: {region.area:.5g} mm²", text, INKS[name]
         )
         marks.append(label)
         top -= 1.6 * text

@@ -34,7 +34,7 @@ from aidl_lang.export.drafting.tables import (
 )
 from aidl_lang.export.job import ExportError, Job
 from aidl_lang.export.marks import Area, Curves, Group, Ink, Mark, Picture, Placing, Text, corners, widened
-from aidl_lang.geometry.curves import Arc, Bounds, Circle, Line, Piece, Vec, bounds, point, union_bounds
+from aidl_lang.geometry.curves import Arc, Bounds, Circle, Line, Piece, Vec, union_bounds
 from aidl_lang.geometry.dimensions import mirror_levels
 from aidl_lang.geometry.dimensions.sketch import is_half_round
 from aidl_lang.geometry.drawing import Drawing
@@ -82,7 +82,7 @@ def drawn_view(view: View, factor: float, digits: float) -> DrawnView:
         for number, body in view.balloons
     ]
     callouts += [
-        Callout(f"note-{number}", words, tuple(_spots(union_bounds([bounds(p) for p in pieces]), pieces)))
+        Callout(f"note-{number}", words, tuple(_spots(union_bounds([p.box for p in pieces]), pieces)))
         for number, (words, pieces) in enumerate(view.notes, 1)
     ]
     box, dimensions, left = dimensioned_to_scale(view.drawing, pen, view.wanted, callouts, signs)
@@ -110,7 +110,7 @@ def _spots(box: Bounds, pieces: Sequence[Piece]) -> Iterator[tuple[Vec, Vec]]:
     left, bottom, right, top = box
     for piece in pieces:
         for t in (0.5, 0.3, 0.7):
-            tip = point(piece, t)
+            tip = piece.point(t)
             for turn in (45, 135, -45, -135, 20, 160, 70, 110):
                 way = math.cos(math.radians(turn)), math.sin(math.radians(turn))
                 out = (tip[0] - (left + right) / 2) * way[0] + (tip[1] - (bottom + top) / 2) * way[1]

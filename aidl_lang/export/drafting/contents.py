@@ -10,7 +10,7 @@ from aidl_lang.common.prose import fixed
 from aidl_lang.common.records import record
 from aidl_lang.export.dimensioning import seen_on, visible
 from aidl_lang.geometry.boolean import Contacts
-from aidl_lang.geometry.curves import Circle, Piece, Vec, bounds, point, union_bounds
+from aidl_lang.geometry.curves import Circle, Piece, Vec, union_bounds
 from aidl_lang.geometry.dimensions import completed, overall
 from aidl_lang.geometry.drawing import Body, Drawing, Stroke
 from aidl_lang.geometry.parts import engraved, gathered, shape_of
@@ -72,7 +72,7 @@ def said_of(model: SolvedModel, drawing: Drawing) -> tuple[Labels, Notes, list[s
 
 
 def _middle(piece: Piece) -> Vec:
-    x, y = point(piece, 0.5)
+    x, y = piece.point(0.5)
     return round(x, 6), round(y, 6)
 
 
@@ -253,7 +253,7 @@ def _overview(
 
 
 def _only(drawing: Drawing, bodies: Sequence[Body], strokes: Sequence[Stroke]) -> Drawing:
-    boxes = [b.box for b in bodies] + [bounds(p) for s in strokes for p in s.pieces]
+    boxes = [b.box for b in bodies] + [p.box for s in strokes for p in s.pieces]
     paths = {b.path for b in bodies}
     return replace(
         drawing,

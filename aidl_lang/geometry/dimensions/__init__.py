@@ -17,43 +17,10 @@ from aidl_lang.building.model import Model, Structure
 from aidl_lang.building.state import ParamBinding, Scope
 from aidl_lang.building.values import Num
 from aidl_lang.common.records import record
-from aidl_lang.geometry.curves import (
-    LARGEST,
-    NO_LENGTH,
-    Arc,
-    Circle,
-    Line,
-    Piece,
-    Vec,
-    bounds,
-    nearest,
-    point,
-)
+from aidl_lang.geometry.curves import LARGEST, NO_LENGTH, Arc, Circle, Line, Piece, Vec
+from aidl_lang.geometry.dimensions import features
 from aidl_lang.geometry.dimensions import sketch as sk
 from aidl_lang.geometry.dimensions.constraints import Scene, by_hand, stated_lengths
-from aidl_lang.geometry.dimensions.features import (
-    X_AXIS,
-    Y_AXIS,
-    dot,
-    field_sizes,
-    left_of,
-    length_along,
-    length_between,
-    pattern_pitches,
-    round_dimension,
-)
-from aidl_lang.geometry.dimensions.sketch import (
-    ALONG,
-    Level,
-    Places,
-    Reading,
-    Sketch,
-    Span,
-    flipped,
-    is_on,
-    less,
-    told,
-)
 from aidl_lang.geometry.drawing import Body, Drawing
 from aidl_lang.geometry.region import Loop
 from aidl_lang.geometry.solved import Dimension, Length, Opening, Roundness, SolvedModel
@@ -114,7 +81,7 @@ def completed(
         or _is_told_by(group[0].curve, pieces, slack)
     ]
     holes = _scattered(drawing, stated, slack)
-    said = Places[tuple[str, str]](slack)
+    said = sk.Places[tuple[str, str]](slack)
     for circle, label, remark in labels:
         said.add((*circle.center, circle.radius), (label, remark))
     groups = [
@@ -123,7 +90,7 @@ def completed(
         if not any(_is_about(d, holes, slack) for d in group)
     ]
     drawn = [stroke.pieces for stroke in drawing.strokes]
-    told_apart = Places[Piece](slack)
+    told_apart = sk.Places[Piece](slack)
     for piece in filed:
         told_apart.add(_middle(piece), piece)
     free, datum = [], (0.0, 0.0)
@@ -144,7 +111,7 @@ def _is_told_by(ring: Circle | Arc, pieces: Iterable[Piece], slack: float) -> bo
     of them, or a middle between two, straight beside the centre or above it.
     """
     (x0, y0), centers = ring.center, (p.center for p in pieces if isinstance(p, Circle))
-    on_it = (c for c in centers if is_on(ring, c, slack))
+    on_it = (c for c in centers if sk.is_on(ring, c, slack))
     turns = sorted(math.degrees(math.atan2(y - y0, x - x0)) % 360 for x, y in on_it)
     steps = [b - a for a, b in pairwise([*turns, turns[0] + 360])] if turns else []
     if not steps or max(steps) - min(steps) > _EVEN:
@@ -165,7 +132,7 @@ def _scattered(drawing: Drawing, stated: Sequence[Group], slack: float) -> tuple
 
     def is_ordered(c: Circle) -> bool:
         in_row = any(math.dist(c.center, p) <= slack for p in ordered)
-        return in_row or any(is_on(ring, c.center, slack) for ring in rings)
+        return in_row or any(sk.is_on(ring, c.center, slack) for ring in rings)
 
     holes = [
         piece
@@ -190,7 +157,7 @@ def _is_about(of: Dimension, holes: Sequence[Circle], slack: float) -> bool:
     return False
 
 
-def _labelled(groups: Iterable[Group], said: Places[tuple[str, str]]) -> Iterator[Group]:
+def _labelled(groups: Iterable[Group], said: sk.Places[tuple[str, str]]) -> Iterator[Group]:
     """Yields the groups with what is said of their circles; apart where that differs."""
     for group in groups:
         apart: dict[tuple[str, str], list[Dimension]] = {}
@@ -223,7 +190,7 @@ class _Part:
         drawn: Sequence[Sequence[Piece]],
         slack: float,
         holes: Sequence[Circle],
-        filed: Places[Piece],
+        filed: sk.Places[Piece],
     ) -> None:
         self.body, self.slack = body, slack
         loops = [loop for loop in body.region.loops if loop.pieces[0] not in holes]
@@ -233,10 +200,10 @@ class _Part:
             if all(isinstance(p, Line | Arc | Circle) and filed.find(_middle(p)) is None for p in loop.pieces)
         ]
         circles = [Loop((p[0],)) for p in drawn if len(p) == 1 and isinstance(p[0], Circle)]
-        self.sketch = Sketch([*clear, *circles], body.box, slack)
+        self.sketch = sk.Sketch([*clear, *circles], body.box, slack)
         seen = [level for level in self.sketch.levels() if level.rank < sk.HIDDEN]
         if len(seen) > MOST_LEVELS:
-            clear, self.sketch = [], Sketch([], body.box, slack)
+            clear, self.sketch = [], sk.Sketch([], body.box, slack)
         self.loose = [piece for loop in loops if loop not in clear for piece in loop.pieces]
         self.drawn = [piece for pieces in drawn for piece in pieces]
         self.datums = [self._datum(axis) for axis in (0, 1)]
@@ -246,12 +213,12 @@ class _Part:
             if middle is not None:
                 axle = self.sketch.mirror(axis, middle)
                 known += [] if self.datums[axis].reading.needs else [axle]
-        self.seen, self.span = (Span(self.sketch.count) for _ in range(2))
+        self.seen, self.span = (sk.Span(self.sketch.count) for _ in range(2))
         self.rows = [self.sketch.row(reading) for reading in (*self.sketch.equations, *known)]
         for span in (self.seen, self.span):
             span.add_all(self.rows)
 
-    def _datum(self, axis: int) -> Level:
+    def _datum(self, axis: int) -> sk.Level:
         """Returns what levels are measured from: the left or lower end, the centre of what is round there."""
         low = self.body.box[axis]
         levels = [level for level in self.sketch.levels() if level.axis == axis]
@@ -264,11 +231,11 @@ class _Part:
         for own in sorted(rounds, key=lambda r: -r.curve.radius):
             return next(n for n in levels if n.reading.needs == own.center.along(axis).needs)
         self.sketch.fixed[axis] = low
-        return Level(axis, low, Reading((), lambda _: low), tuple(self._ends_at(axis, low)), sk.EDGE)
+        return sk.Level(axis, low, sk.Reading((), lambda _: low), tuple(self._ends_at(axis, low)), sk.EDGE)
 
-    def _filed(self) -> Iterator[Reading]:
+    def _filed(self) -> Iterator[sk.Reading]:
         """Yields the levels of the ends of the part that an outline without dimensions reaches."""
-        boxes = [bounds(piece) for piece in self.loose]
+        boxes = [piece.box for piece in self.loose]
         for side, end in enumerate(self.body.box):
             number = self.sketch.level(side % 2, end)
             if number is not None and any(abs(box[side] - end) <= self.slack for box in boxes):
@@ -282,7 +249,7 @@ class _Part:
         for group in groups:
             members, is_new, is_judged = [], False, True
             for of in map(self._shifted, group):
-                readings = told(self.sketch, of)
+                readings = sk.told(self.sketch, of)
                 if self.loose and of.origin == "overall":
                     is_judged = False
                 elif readings:
@@ -302,7 +269,7 @@ class _Part:
         """Tells whether the size of the whole ends at a rounded corner, so that others tell it better."""
         if group[0].origin != "overall":
             return False
-        readings = told(self.sketch, group[0]) or ()
+        readings = sk.told(self.sketch, group[0]) or ()
         return any(self.sketch.fillets.intersection(reading.needs) for reading in readings)
 
     def pruned(self, groups: Sequence[Group]) -> list[Group]:
@@ -327,19 +294,19 @@ class _Part:
     def _rows_of(self, group: Group) -> list[sk.Row]:
         if group[0].is_auxiliary or (self.loose and group[0].origin == "overall"):
             return []
-        return [self.sketch.row(reading) for of in group for reading in told(self.sketch, of) or ()]
+        return [self.sketch.row(reading) for of in group for reading in sk.told(self.sketch, of) or ()]
 
-    def _learn(self, readings: Iterable[Reading]) -> bool:
+    def _learn(self, readings: Iterable[sk.Reading]) -> bool:
         """Tells whether any of some numbers says something new."""
         return self.span.add_all(map(self.sketch.row, readings))
 
     def _shifted(self, of: Dimension) -> Dimension:
         """Returns a length along an axis between points that are seen, if some are as far from each other."""
-        if not isinstance(of, Length) or of.along not in ALONG or of.origin == "hand":
+        if not isinstance(of, Length) or of.along not in sk.ALONG or of.origin == "hand":
             return of
-        if told(self.sketch, of) and self._is_there(of.start) and self._is_there(of.end):
+        if sk.told(self.sketch, of) and self._is_there(of.start) and self._is_there(of.end):
             return of
-        axis = ALONG.index(of.along)
+        axis = sk.ALONG.index(of.along)
         seen = [n for n in self.sketch.levels() if n.axis == axis and n.rank < sk.HIDDEN]
         found = [
             (abs(a.value - of.start[0][axis]), k, replace(of, start=a.points, end=b.points))
@@ -358,7 +325,7 @@ class _Part:
 
     def _is_on(self, pieces: Iterable[Piece], points: Sequence[Vec]) -> bool:
         return any(
-            math.dist(point(piece, nearest(piece, p)), p) <= self.slack for piece in pieces for p in points
+            math.dist(piece.point(piece.nearest(p)), p) <= self.slack for piece in pieces for p in points
         )
 
     def _is_on_loose(self, of: Dimension) -> bool:
@@ -388,7 +355,7 @@ class _Part:
             first = self.sketch.row(sk.plain(rounds[0].radius))
             group = "round", self.body.path, *rounds[0].curve.center
             told_here = [
-                _derived(round_dimension(own.curve), group)
+                _derived(features.round_dimension(own.curve), group)
                 for own in rounds
                 if self._learn([sk.plain(own.radius)])
                 or not self.seen.lacks(self.sketch.row(sk.plain(own.radius)) - first)
@@ -399,34 +366,34 @@ class _Part:
     def _levels(self) -> Iterator[Group]:
         """Yields lengths that tie the levels that are tied to nothing."""
         levels = self.sketch.levels()
-        known = (Places[Level](self.slack), Places[Level](self.slack))
+        known = (sk.Places[sk.Level](self.slack), sk.Places[sk.Level](self.slack))
         for level in levels:
             if level.rank < sk.HIDDEN and level.points:
                 known[level.axis].add((level.value,), level)
 
-        def turn(level: Level) -> tuple[int, int, float]:
+        def turn(level: sk.Level) -> tuple[int, int, float]:
             return level.rank, level.axis, abs(level.value - self.datums[level.axis].value)
 
         for level in sorted(levels, key=turn):
             datum, middle = self.datums[level.axis], self.middles[level.axis]
-            if not self.span.lacks(self.sketch.row(less(level.reading, datum.reading))):
+            if not self.span.lacks(self.sketch.row(sk.less(level.reading, datum.reading))):
                 continue
             other = datum
             if middle is not None and level.rank < sk.HIDDEN:
                 other = known[level.axis].find((2 * middle - level.value,)) or datum
                 other = datum if other is level else other
-            number = less(level.reading, other.reading)
+            number = sk.less(level.reading, other.reading)
             self._learn([number])
             if abs(level.value - other.value) <= self.slack:
                 self.rows.append(self.sketch.row(number))  # seen to be on one level
             else:
-                found = length_between(other.points, level.points, ALONG[level.axis])
+                found = features.length_between(other.points, level.points, sk.ALONG[level.axis])
                 yield (_derived(found, ("level", self.body.path, level.axis, *level.points[0])),)
 
     def _ends_at(self, axis: int, value: float) -> list[Vec]:
         found = []
         for piece in self.body.region.pieces:
-            box = bounds(piece)
+            box = piece.box
             for side in (axis, axis + 2):
                 if abs(box[side] - value) <= self.slack:
                     middle = (box[1 - axis] + box[3 - axis]) / 2
@@ -444,12 +411,12 @@ def _derived(of: Dimension, group: object) -> Dimension:
 
 def mirror_levels(body: Body, slack: float) -> tuple[float | None, float | None]:
     """Returns the x of the upright axis that a body is symmetric about, and the y of the level one."""
-    places = Places[Piece](slack)
+    places = sk.Places[Piece](slack)
     for piece in body.region.pieces:
         places.add(_middle(piece), piece)
 
     def is_mirrored(piece: Piece, axis: int, middle: float) -> bool:
-        there = places.all(flipped(_middle(piece), axis, middle))
+        there = places.all(sk.flipped(_middle(piece), axis, middle))
         return any(_is_mirror(piece, other, axis, middle, 4 * slack) for other in there)
 
     found = []
@@ -461,15 +428,15 @@ def mirror_levels(body: Body, slack: float) -> tuple[float | None, float | None]
 
 
 def _middle(piece: Piece) -> Vec:
-    return piece.center if isinstance(piece, Circle) else point(piece, 0.5)
+    return piece.center if isinstance(piece, Circle) else piece.point(0.5)
 
 
 def _is_mirror(a: Piece, b: Piece, axis: int, middle: float, slack: float) -> bool:
     if isinstance(a, Circle) or isinstance(b, Circle):
         return isinstance(a, Circle) and isinstance(b, Circle) and abs(a.radius - b.radius) <= slack
-    spots = [flipped(point(a, t), axis, middle) for t in (0.0, 0.25, 1.0)]
+    spots = [sk.flipped(a.point(t), axis, middle) for t in (0.0, 0.25, 1.0)]
     return type(a) is type(b) and any(
-        all(math.dist(p, point(b, t)) <= slack for p, t in zip(spots, ways, strict=True))
+        all(math.dist(p, b.point(t)) <= slack for p, t in zip(spots, ways, strict=True))
         for ways in ((0.0, 0.25, 1.0), (1.0, 0.75, 0.0))
     )
 
@@ -487,8 +454,9 @@ RANKS = ("hand", "param", "overall", "constraint", "size", "pattern")
 def sizes(model: Model, solved: SolvedModel, evaluate: Evaluator) -> tuple[Dimension, ...]:
     """Returns the dimensions that the program states: exact sizes, what constraints measure, kept sizes."""
     names = _param_names(model.root)
-    scene, fields = Scene(model, solved, evaluate, names), field_sizes(model, solved, evaluate, names)
-    found = [*by_hand(model, scene), *fields, *stated_lengths(model, scene)]
+    scene = Scene(model, solved.root, evaluate, names)
+    found = [*by_hand(model, scene), *features.field_sizes(model, solved.root, evaluate, names)]
+    found += stated_lengths(model, scene)
     found = [d for d in found if abs(d.value) <= LARGEST]  # of what has a place
     return tuple(sorted(found, key=lambda d: RANKS.index(d.origin)))
 
@@ -510,14 +478,14 @@ def dimensions(model: SolvedModel, drawing: Drawing) -> list[tuple[Dimension, ..
     once. The more important come first, that of the whole before all.
     """
     tolerance = 1e-6 * drawing.size
-    stated = _grouped([*overall(drawing), *left_of(model.sizes, model.root)], tolerance)
+    stated = _grouped([*overall(drawing), *features.left_of(model.sizes, model.root)], tolerance)
     # A diameter tells width and height of what is round.
     rounds = [g[0].curve for g in stated if isinstance(g[0], Roundness) and isinstance(g[0].curve, Circle)]
     stated = [
         g for g in stated if g[0].origin != "overall" or not any(_spans(c, g[0], tolerance) for c in rounds)
     ]
     everything = [d for g in stated for d in g]
-    everything += [d for g in stated for d in pattern_pitches(g, tolerance)]
+    everything += [d for g in stated for d in features.pattern_pitches(g, tolerance)]
     return sorted(_grouped(everything, tolerance), key=lambda g: not _is_overall(g[0], drawing))
 
 
@@ -535,9 +503,9 @@ def _grouped(found: Iterable[Dimension], tolerance: float) -> list[tuple[Dimensi
 
 def _spans(circle: Circle | Arc, whole: Dimension, tolerance: float) -> bool:
     assert isinstance(whole, Length)
-    low = dot(circle.center, whole.along) - circle.radius
+    low = features.dot(circle.center, whole.along) - circle.radius
     same = abs(2 * circle.radius - whole.value) <= tolerance
-    return same and abs(low - dot(whole.start[0], whole.along)) <= tolerance
+    return same and abs(low - features.dot(whole.start[0], whole.along)) <= tolerance
 
 
 def overall(drawing: Drawing) -> Iterator[Length]:
@@ -545,14 +513,14 @@ def overall(drawing: Drawing) -> Iterator[Length]:
     curves = [p for b in drawing.bodies for loop in b.region.loops for p in loop.pieces]
     curves += [p for stroke in drawing.strokes for p in stroke.pieces]
     if curves:
-        for along in (X_AXIS, Y_AXIS):
-            yield replace(length_along(curves, along), origin="overall")
+        for along in sk.ALONG:
+            yield replace(features.length_along(curves, along), origin="overall")
 
 
 def _is_overall(dimension: Dimension, drawing: Drawing) -> bool:
-    if not isinstance(dimension, Length) or dimension.along not in (X_AXIS, Y_AXIS):
+    if not isinstance(dimension, Length) or dimension.along not in sk.ALONG:
         return False
-    axis = int(dimension.along == Y_AXIS)
+    axis = sk.ALONG.index(dimension.along)
     whole = drawing.box[axis + 2] - drawing.box[axis]
     return abs(dimension.value - whole) <= 1e-6 * drawing.size
 
@@ -566,7 +534,7 @@ def _place(dimension: Dimension, tolerance: float) -> object:
     match dimension:
         case Length(start=start, end=end, along=(u, v)):
             ends = sorted(p[0] * u + p[1] * v for p in (start[0], end[0]))
-            across = [] if (u, v) in (X_AXIS, Y_AXIS) else [p[1] * u - p[0] * v for p in (start[0], end[0])]
+            across = [] if (u, v) in sk.ALONG else [p[1] * u - p[0] * v for p in (start[0], end[0])]
             return Length, rounded([*ends, *across, u * 100 * tolerance, v * 100 * tolerance])
         case Roundness(curve=curve):
             return Roundness, rounded([*curve.center, curve.radius])

@@ -20,28 +20,9 @@ from aidl_lang.building.wording import Wording
 from aidl_lang.common.materials import limits as fit_limits
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
-from aidl_lang.geometry.curves import NO_LENGTH, Arc, Circle, Line, Piece, Vec, point, turn_between
-from aidl_lang.geometry.dimensions.features import (
-    SizedGeometry,
-    angle_of,
-    dot,
-    extreme,
-    foot,
-    length_along,
-    length_between,
-    length_of_line,
-    level_angle,
-    meeting,
-    round_dimension,
-)
-from aidl_lang.geometry.solved import (
-    Dimension,
-    Length,
-    Roundness,
-    SolvedGeometry,
-    SolvedModel,
-    SolvedStructure,
-)
+from aidl_lang.geometry.curves import NO_LENGTH, Arc, Circle, Line, Piece, Vec, turn_between
+from aidl_lang.geometry.dimensions import features
+from aidl_lang.geometry.solved import Dimension, Length, Roundness, SolvedGeometry, SolvedStructure
 from aidl_lang.syntax import ast
 
 _AXIS = {"left": 0, "right": 0, "center_x": 0, "x": 0, "bottom": 1, "top": 1, "center_y": 1, "y": 1}
@@ -78,10 +59,10 @@ class Scene:
     """The solved structures and geometry by path."""
 
     def __init__(
-        self, model: Model, solved: SolvedModel, evaluate: Evaluator, names: Mapping[Expression, str]
+        self, model: Model, solved: SolvedStructure, evaluate: Evaluator, names: Mapping[Expression, str]
     ) -> None:
         self.root, self.evaluate, self.names = model.root, evaluate, names
-        self.structures: dict[str, SolvedStructure] = {s.path: s for s in solved.root.walk()}
+        self.structures: dict[str, SolvedStructure] = {s.path: s for s in solved.walk()}
         self.geometry: dict[str, SolvedGeometry] = {
             g.path: g for s in self.structures.values() for own in s.geometry for g in own.walk()
         }
@@ -159,30 +140,27 @@ class _Statement:
         solved = self.scene.geometry.get(thing.path) if isinstance(thing, Geometry) else None
         curve = solved.curve if solved is not None else None
         if isinstance(curve, Circle | Arc):
-            return round_dimension(curve)
-        return length_of_line(curve.start, curve.end) if isinstance(curve, Line) else None
+            return features.round_dimension(curve)
+        return features.length_of_line(curve.start, curve.end) if isinstance(curve, Line) else None
 
     def _from_to(self, a: ast.Expression, b: ast.Expression) -> Dimension | None:
         """Returns the distance of two things: along the axis of a coordinate or of an edge that is level or
         upright, at a right angle to a slanted edge; the angle of two edges that are not parallel.
         """
         lines = [line for node in (a, b) if (line := self._line(node)) is not None]
-        if len(lines) == 2 and meeting(*lines) is not None:
-            u, v = ((q.end[0] - q.start[0], q.end[1] - q.start[1]) for q in lines)
-            return angle_of(lines[0], lines[1], abs(math.degrees(turn_between(u, v))))
+        if len(lines) == 2 and features.meeting(*lines) is not None:
+            turn = turn_between(lines[0].way, lines[1].way)
+            return features.angle_of(lines[0], lines[1], abs(math.degrees(turn)))
         axis = next((k for node in (a, b) if (k := self._axis(node)) is not None), None)
         if axis is None:
             return self._distance("distance", a, b)
         ends = [self._at_axis(node, axis) for node in (a, b)]
-        return length_between(ends[0], ends[1], self._way(axis)) if all(ends) else None
+        return features.length_between(ends[0], ends[1], self._way(axis)) if all(ends) else None
 
     def _axis(self, node: ast.Expression) -> int | None:
         """Returns the axis along which something has a coordinate of its own: 0 for an upright edge."""
         if (line := self._line(node)) is not None:
-            across = [
-                abs(dot((line.end[0] - line.start[0], line.end[1] - line.start[1]), self._way(k)))
-                for k in (0, 1)
-            ]
+            across = [abs(features.dot(line.way, self._way(k))) for k in (0, 1)]
             flat = _SLACK * math.dist(line.start, line.end)
             return next((k for k in (0, 1) if across[k] <= flat), None)
         value = self.wording.value(node)
@@ -232,7 +210,7 @@ class _Statement:
             gap = self._constant(named["gap"])
             sides = [self._side(n, side) for n, side in zip(given, _FACING[name], strict=True)]
             if isinstance(gap, Num) and all(sides):
-                yield length_between(sides[0], sides[1], self._way(_AXIS[_FACING[name][0]])), gap
+                yield features.length_between(sides[0], sides[1], self._way(_AXIS[_FACING[name][0]])), gap
         elif name in _MEASURES and given:
             said = named.get("value") or given[-1]
             value = self._constant(said)
@@ -253,15 +231,15 @@ class _Statement:
         if name != "distance":
             p, q = self._point(a), self._point(b)
             along = self._way(int(name.startswith("vertical")))
-            return length_between([p], [q], along) if p and q else None
+            return features.length_between([p], [q], along) if p and q else None
         line_a, line_b = self._line(a), self._line(b)
         line = line_a or line_b
         if line is None:
             p, q = self._point(a), self._point(b)
         else:
-            p = self._point(b if line_a else a) if not (line_a and line_b) else point(line_b or line, 0.5)
-            q = foot(p, line) if p is not None else None
-        return length_of_line(p, q) if p is not None and q is not None else None
+            p = self._point(b if line_a else a) if not (line_a and line_b) else (line_b or line).point(0.5)
+            q = features.foot(p, line) if p is not None else None
+        return features.length_of_line(p, q) if p is not None and q is not None else None
 
     def _angle(self, given: Sequence[ast.Expression], value: float) -> Iterator[Dimension]:
         lines = [self._line(n) for n in given]
@@ -269,27 +247,28 @@ class _Statement:
             a, corner, b = (self._point(n) for n in given)
             lines = [Line(corner, a), Line(corner, b)] if a and corner and b else []
         if len(lines) == 2 and lines[0] and lines[1]:
-            found = angle_of(lines[0], lines[1], min(value % 360, -value % 360))
+            found = features.angle_of(lines[0], lines[1], min(value % 360, -value % 360))
             yield from [found] if found is not None else []
         elif len(lines) == 1 and lines[0]:
-            yield from level_angle(lines[0], self._turned())
+            yield from features.level_angle(lines[0], self._turned())
 
     def _size(self, node: ast.Expression, name: str, value: float) -> Iterator[Dimension]:
         thing = self.wording.value(node)
         solved = self.scene.geometry.get(thing.path) if isinstance(thing, Geometry) else None
         curve = solved.curve if solved is not None else None
         if isinstance(curve, Circle | Arc) and name in ("radius", "diameter"):
-            yield round_dimension(curve)
+            yield features.round_dimension(curve)
         elif isinstance(curve, Line) and name == "length":
-            line = length_of_line(curve.start, curve.end)
+            line = features.length_of_line(curve.start, curve.end)
             yield from [line] if line else []
         elif isinstance(curve, Line) and name == "angle":
-            yield from level_angle(curve, self._turned())
+            yield from features.level_angle(curve, self._turned())
         elif solved is not None and isinstance(thing, Geometry) and thing.is_compound and name != "angle":
-            sized = SizedGeometry(thing, solved, self._turned(), self.scene.evaluate, self.scene.names)
+            known = self._turned(), self.scene.evaluate, self.scene.names
+            sized = features.SizedGeometry(thing, solved, *known)
             yield from list(sized.length(name, value))[:1]
         elif name in ("width", "height") and (curves := self.scene.curves(thing)):
-            yield length_along(curves, self._way(int(name == "height")))
+            yield features.length_along(curves, self._way(int(name == "height")))
 
     # --- Offsets -----------------------------------------------------------------------------------
 
@@ -313,11 +292,11 @@ class _Statement:
             p, q = self._point(a), self._point(b)
             if p and q:
                 for axis, number in enumerate((offset.x, offset.y)):
-                    yield length_between([p], [q], self._way(axis)), number
+                    yield features.length_between([p], [q], self._way(axis)), number
             return
         one, other = self._coordinate(a), self._coordinate(b)
         if one is not None and other is not None and one[0] == other[0]:
-            yield length_between(one[1], other[1], self._way(one[0])), offset
+            yield features.length_between(one[1], other[1], self._way(one[0])), offset
 
     def _terms(
         self, node: ast.Expression, sign: int
@@ -346,8 +325,7 @@ class _Statement:
         line = self._line(node)
         if line is None:
             return None
-        way = self._way(0)
-        is_upright = abs((line.end[0] - line.start[0]) * way[0] + (line.end[1] - line.start[1]) * way[1])
+        is_upright = abs(features.dot(line.way, self._way(0)))
         return int(is_upright > 1e-6 * math.dist(line.start, line.end)), (line.start, line.end)
 
     def _side(self, node: ast.Expression, side: str) -> tuple[Vec, ...]:
@@ -359,12 +337,10 @@ class _Statement:
             if p is None:
                 return ()
             # Rather the tip of a thing than its middle, where there is nothing to be seen.
-            tips = [*extreme(curves, (-v, u)), *extreme(curves, (v, -u))] if curves else []
-            return (
-                *(q for q in tips if abs(dot((q[0] - p[0], q[1] - p[1]), (u, v))) < 1e-9 * math.hypot(*p)),
-                p,
-            )
-        return extreme(curves, (u, v) if side in ("right", "top") else (-u, -v)) if curves else ()
+            tips = [*features.extreme(curves, (-v, u)), *features.extreme(curves, (v, -u))] if curves else []
+            ways = ((q, features.dot((q[0] - p[0], q[1] - p[1]), (u, v))) for q in tips)
+            return (*(q for q, away in ways if abs(away) < 1e-9 * math.hypot(*p)), p)
+        return features.extreme(curves, (u, v) if side in ("right", "top") else (-u, -v)) if curves else ()
 
     # --- Values ------------------------------------------------------------------------------------
 

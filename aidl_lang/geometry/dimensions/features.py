@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import pairwise
 
@@ -17,32 +17,10 @@ from aidl_lang.building.values import ListVal, Num
 from aidl_lang.checking.units import ANGLE, LENGTH
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
-from aidl_lang.geometry.curves import (
-    Arc,
-    Circle,
-    Ellipse,
-    EllipseArc,
-    Line,
-    Piece,
-    Vec,
-    ends,
-    extreme_parameters,
-    is_closed,
-    locate,
-    nearest,
-    point,
-)
-from aidl_lang.geometry.nearness import inside
-from aidl_lang.geometry.region import Region, region_bounds, region_polygons
-from aidl_lang.geometry.solved import (
-    Dimension,
-    Length,
-    Opening,
-    Roundness,
-    SolvedGeometry,
-    SolvedModel,
-    SolvedStructure,
-)
+from aidl_lang.geometry.curves import Arc, Circle, Ellipse, EllipseArc, Line, Piece, Vec, larger_side
+from aidl_lang.geometry.intersect import inside
+from aidl_lang.geometry.region import Region
+from aidl_lang.geometry.solved import Dimension, Length, Opening, Roundness, SolvedGeometry, SolvedStructure
 
 # --- Sizes of what `@clip` takes away: a drawing does not state them.
 
@@ -57,27 +35,22 @@ def is_clipped(root: SolvedStructure) -> bool:
 
 def left_of(sizes: Sequence[Dimension], root: SolvedStructure) -> list[Dimension]:
     """Returns the sizes of which both ends are still there where structures are clipped."""
-    clips = [(f"{s.path}.", _Inside(s.inside)) for s in root.walk() if s.inside is not None]
-    return [d for d in sizes if all(clip.shows(d) for path, clip in clips if f"{d.of}.".startswith(path))]
+    clips = [(f"{s.path}.", _seen_in(s.inside)) for s in root.walk() if s.inside is not None]
+    own = ((d, [shows for path, shows in clips if f"{d.of}.".startswith(path)]) for d in sizes)
+    return [d for d, around in own if all(shows(spots) for shows in around for spots in _ends(d))]
 
 
-class _Inside:
-    """The region that a structure is clipped to."""
+def _seen_in(region: Region) -> Callable[[Sequence[Vec]], bool]:
+    """Returns what tells whether a region has one of some places, inside or on its border."""
+    size = larger_side(region.box)
+    polygons = region.polygons(_CHORD * size)
 
-    def __init__(self, region: Region) -> None:
-        left, bottom, right, top = region_bounds(region) if region else (0.0, 0.0, 0.0, 0.0)
-        size = max(right - left, top - bottom)
-        self._region, self._near = region, _NEAR * size
-        self._polygons = region_polygons(region, _CHORD * size) if region else []
+    def has_one(spots: Sequence[Vec]) -> bool:
+        return bool(inside(polygons, np.array(spots)).any()) or any(
+            math.dist(c.point(c.nearest(p)), p) <= _NEAR * size for p in spots for c in region.pieces
+        )
 
-    def shows(self, dimension: Dimension) -> bool:
-        return all(self._has_one(spots) for spots in _ends(dimension))
-
-    def _has_one(self, spots: Sequence[Vec]) -> bool:
-        if inside(self._polygons, np.array(spots)).any():
-            return True
-        borders = self._region.pieces
-        return any(math.dist(point(c, nearest(c, p)), p) <= self._near for p in spots for c in borders)
+    return has_one
 
 
 def _ends(dimension: Dimension) -> Iterator[Sequence[Vec]]:
@@ -88,7 +61,7 @@ def _ends(dimension: Dimension) -> Iterator[Sequence[Vec]]:
                 shares = [k / _SPOTS for k in range(_SPOTS + 1)]
                 yield [(x0 + t * (x1 - x0), y0 + t * (y1 - y0)) for t in shares]
         case Roundness(curve=curve):
-            yield [point(curve, k / _SPOTS) for k in range(_SPOTS + 1)]
+            yield [curve.point(k / _SPOTS) for k in range(_SPOTS + 1)]
         case Opening(corner=corner):
             yield [corner]
 
@@ -129,13 +102,13 @@ def _spots(curve: Piece | Vec, u: Vec) -> Sequence[Vec]:
     """Returns points of a curve of which one is the furthest in a direction."""
     if isinstance(curve, tuple):
         return [curve]
-    own = [] if is_closed(curve) else list(ends(curve))
+    own = [] if curve.is_closed else list(curve.ends)
     if isinstance(curve, Circle | Arc):
         tip = curve.center[0] + curve.radius * u[0], curve.center[1] + curve.radius * u[1]
-        on_it = isinstance(curve, Circle) or locate(curve, tip, 1e-9 * curve.radius) is not None
+        on_it = isinstance(curve, Circle) or curve.locate(tip, 1e-9 * curve.radius) is not None
         return [*own, tip] if on_it else own
     if isinstance(curve, Ellipse | EllipseArc) or u in (X_AXIS, Y_AXIS, (-1.0, 0.0), (0.0, -1.0)):
-        own += [point(curve, t) for t in extreme_parameters(curve) if 0 <= t <= 1]
+        own += [curve.point(t) for t in curve.extremes() if 0 <= t <= 1]
     return own
 
 
@@ -164,7 +137,7 @@ def unit(a: Vec, b: Vec) -> Vec | None:
 
 def foot(p: Vec, line: Line) -> Vec:
     """Returns the point of an endless line that is nearest to a point."""
-    dx, dy = line.end[0] - line.start[0], line.end[1] - line.start[1]
+    dx, dy = line.way
     square = dx * dx + dy * dy
     t = ((p[0] - line.start[0]) * dx + (p[1] - line.start[1]) * dy) / square if square else 0.0
     return line.start[0] + t * dx, line.start[1] + t * dy
@@ -191,8 +164,7 @@ def angle_of(a: Line, b: Line, degrees: float) -> Opening | None:
 
 def meeting(a: Line, b: Line) -> Vec | None:
     """Returns the crossing of two endless lines; None if they are parallel."""
-    ux, uy = a.end[0] - a.start[0], a.end[1] - a.start[1]
-    vx, vy = b.end[0] - b.start[0], b.end[1] - b.start[1]
+    (ux, uy), (vx, vy) = a.way, b.way
     cross = ux * vy - uy * vx
     if abs(cross) <= _FLAT * math.hypot(ux, uy) * math.hypot(vx, vy):
         return None
@@ -202,7 +174,7 @@ def meeting(a: Line, b: Line) -> Vec | None:
 
 def _arm(line: Line, side: float, corner: Vec) -> tuple[float, tuple[float, float]]:
     """Returns the direction of a line to one side, and the stretch in which it is drawn there."""
-    ux, uy = side * (line.end[0] - line.start[0]), side * (line.end[1] - line.start[1])
+    ux, uy = side * line.way[0], side * line.way[1]
     reach = math.hypot(ux, uy)
     u = ux / reach, uy / reach
     along = sorted(dot((p[0] - corner[0], p[1] - corner[1]), u) for p in (line.start, line.end))
@@ -271,10 +243,10 @@ _PARALLEL = 1 - 1e-9
 
 
 def field_sizes(
-    model: Model, solved: SolvedModel, evaluate: Evaluator, names: Mapping[Expression, str]
+    model: Model, solved: SolvedStructure, evaluate: Evaluator, names: Mapping[Expression, str]
 ) -> Iterator[Dimension]:
     """Yields the sizes of all geometry that is drawn; of copies only round ones, to be counted."""
-    for structure, read in zip(model.root.walk(), solved.root.walk(), strict=True):
+    for structure, read in zip(model.root.walk(), solved.walk(), strict=True):
         checkpoint()
         turned = evaluate(convert_angle(ex.ZERO, structure, model.root))
         known = {g.path: g for g in read.geometry}
@@ -359,7 +331,7 @@ class SizedGeometry:
         curve = self.solved.curve
         if isinstance(curve, Ellipse) and name in ("rx", "ry"):
             t = 0.0 if name == "rx" else 0.25
-            across = length_of_line(point(curve, t + 0.5), point(curve, t))
+            across = length_of_line(curve.point(t + 0.5), curve.point(t))
             yield from [across] if across else []
         elif "radius" in name or "diameter" in name:
             radius = value / 2 if "diameter" in name else value
@@ -441,7 +413,7 @@ def _fillets(
             continue
         fitting = [a for a in arcs if _same(a.radius, done.sizes[0])]
         for corner in done.corners if fitting else ():
-            arc = min(fitting, key=lambda a: math.dist(point(a, 0.5), corner))
+            arc = min(fitting, key=lambda a: math.dist(a.point(0.5), corner))
             yield replace(
                 round_dimension(arc),
                 origin=origin,

@@ -21,7 +21,7 @@ import numpy as np
 
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
-from aidl_lang.geometry.curves import Arc, Bounds, Circle, Floats, Line, Piece, Vec, derivative, ends
+from aidl_lang.geometry.curves import Arc, Bounds, Circle, Floats, Line, Piece, Vec
 from aidl_lang.geometry.dimensions.features import X_AXIS, Y_AXIS, meeting
 from aidl_lang.geometry.region import Loop
 from aidl_lang.geometry.sections import joined
@@ -236,7 +236,7 @@ class Sketch:
 
     def _vertex(self, before: Piece, after: Piece) -> Spot:
         """Returns where a piece begins; where an axial edge touches an arc, straight beside the centre."""
-        at = ends(after)[0]
+        at = after.ends[0]
         is_joint = is_smooth(before, after)
         ranks = [JOINT if is_joint else CORNER] * 2
         beside: list[int | None] = [None, None]
@@ -273,11 +273,11 @@ class Sketch:
             if other is None:
                 continue
             self._equate(_off_middle, spot.along(axis), other.along(axis), plain(axle))
-            self._equate(_differing, spot.along(1 - axis), other.along(1 - axis))
+            self.equations.append(less(spot.along(1 - axis), other.along(1 - axis)))
         for own in self.rounds:
             twin = self._rounds.find((*flipped(own.curve.center, axis, middle), own.curve.radius))
             if twin is not None:
-                self._equate(_differing, plain(own.radius), plain(twin.radius))
+                self.equations.append(less(plain(own.radius), plain(twin.radius)))
         return plain(axle)
 
     def levels(self) -> list[Level]:
@@ -351,7 +351,7 @@ def is_half_round(curve: Piece) -> bool:
 
 def is_smooth(before: Piece, after: Piece) -> bool:
     """Tells whether a piece goes over into the next one without a corner."""
-    u, v = derivative(before, 1.0), derivative(after, 0.0)
+    u, v = before.derivative(1.0), after.derivative(0.0)
     size = math.hypot(*u) * math.hypot(*v)
     return abs(u[0] * v[1] - u[1] * v[0]) <= 1e-6 * size and u[0] * v[0] + u[1] * v[1] > 0
 
@@ -359,7 +359,7 @@ def is_smooth(before: Piece, after: Piece) -> bool:
 def _is_right(a: Piece, b: Piece) -> bool:
     if not (isinstance(a, Line) and isinstance(b, Line)):
         return False
-    u, v = derivative(a, 1.0), derivative(b, 0.0)
+    u, v = a.derivative(1.0), b.derivative(0.0)
     return abs(u[0] * v[0] + u[1] * v[1]) <= 1e-6 * math.hypot(*u) * math.hypot(*v)
 
 
@@ -413,10 +413,6 @@ def _off(a: Spot, center: Spot, radius: int, z: Unknowns) -> complex:
 
 def _off_middle(a: Reading, b: Reading, middle: Reading, z: Unknowns) -> complex:
     return a.of(z) + b.of(z) - 2 * middle.of(z)
-
-
-def _differing(a: Reading, b: Reading, z: Unknowns) -> complex:
-    return a.of(z) - b.of(z)
 
 
 def _crossing(a: Spot, b: Spot, c: Spot, d: Spot, axis: int, z: Unknowns) -> complex:

@@ -55,8 +55,8 @@ POSSIBLE = 1e-6
 
 
 @record(frozen=False)
-class Reach:
-    """The velocities possible for a part; `taken` are those reported or known, in the space of all."""
+class _Telling:
+    """The motions of a part, by the velocities possible for it; `taken` are those told or known."""
 
     scene: Scene
     part: Part
@@ -219,96 +219,7 @@ class Reach:
         partly = tuple(f"{path}." for _, path, whole in found if not whole)
         return [(path, whole) for _, path, whole in sorted(found) if not path.startswith(partly)]
 
-
-# --- Independent motions, each as simple as was found.
-
-MOST = 200
-"""Parts of the model that are put into words."""
-
-_KINDS = ("slide", "turn", "grow", "change", "together")
-"""Kinds of motion of one thing, the more telling first."""
-_FOLLOWED = frozenset(_KINDS) - {"together"}
-_LEAVING = {"slide": "slide along a curve that begins along {}", "turn": "turn"}
-"""Words for a motion that does not go on as it begins."""
-
-
-def motions(model: Model, lowered: Lowered, solution: Solution, freedom: Freedom) -> tuple[Motion, ...]:
-    """Returns independent motions of a model, the most interesting first, those of the whole drawing last.
-    Structures come before geometry, geometry before points and numbers; of these the large before the small,
-    and equals in the order of the text.
-    """
-    if not freedom.motions.found:
-        return ()
-    scene = Scene(model, lowered, freedom.motions, Bending(lowered.problem, solution))
-    tellings = [_Telling(scene, part) for part in freedom.motions.parts]
-    whole = list(_own_place(scene, tellings, model.root.path))
-    found = [told for telling in tellings[:MOST] for told in telling.motions()]
-    if not found:
-        return tuple(whole)
-    relations = Relations(model, scene)
-    found.sort(key=lambda told: _interest(told, scene))
-    return (*(replace(m, against=relations.against(m.things, at)) for m, at in found), *whole)
-
-
-def _interest(told: _Told, scene: Scene) -> tuple[int, int, int, int]:
-    motion, moving = told
-    known = [thing for path in motion.things if (thing := scene.known.get(path)) is not None]
-    rank = max((WHOLE if thing.rank == ROOT else thing.rank for thing in known), default=-1)
-    size = sum(thing.stop - thing.start for thing in known)
-    start = min((thing.start for thing in known), default=int(moving.min(initial=0)))
-    return -rank, -size, start, _KINDS.index(motion.kind)
-
-
-def _own_place(scene: Scene, tellings: Sequence[_Telling], root: str) -> Iterator[Motion]:
-    """Yields the motions in which everything moves as one, as motions of the part of the model that most
-    belongs to: then other motions are told of the others, and of what is small in it.
-    """
-    size = np.zeros(len(scene.places) + 1)
-    for axis, words in ((X, "slide along x"), (Y, "slide along y"), (NUMBER, "turn")):
-        pairs = [(t, velocity) for t in tellings if (velocity := t.of_all(axis)).any()]
-        if not pairs or not _all_move(scene, tellings, axis):
-            continue
-        if axis == NUMBER and not _is_one(scene, [t for t, _ in pairs]):
-            continue  # that several bodies turn as one is no more than that each of them is free
-        if not all(t.is_possible(velocity) for t, velocity in pairs):
-            continue
-        largest, velocity = max(
-            pairs, key=lambda pair: float(size[pair[0].part.observables].sum() + len(pair[1]))
-        )
-        # Motions along x and along y are often separate: both shall know the same things.
-        size[largest.part.observables[velocity != 0.0] + 1] = len(size)
-        largest.know(velocity)
-        moves = {path: rate for t, each in pairs for path, rate in t.rates(each).items()}
-        yield Motion("place", (root,), words, moves)
-
-
-def _is_one(scene: Scene, tellings: Sequence[_Telling]) -> bool:
-    """Tells whether the parts are connected by places with x in one of them and y in another."""
-    part = np.full(len(scene.places) + 1, -1)
-    for number, telling in enumerate(tellings):
-        part[telling.part.observables] = number
-    at = np.flatnonzero((scene.axis == X) & (part[:-1] >= 0) & (part[1:] >= 0))
-    return not connected(part[at], part[at + 1], len(tellings)).any()
-
-
-def _all_move(scene: Scene, tellings: Sequence[_Telling], axis: int) -> bool:
-    """Tells whether every place moves along an axis; for a turn, along both."""
-    stays = scene.anchor == 0
-    stays &= (scene.axis == axis) if axis != NUMBER else (scene.axis != NUMBER)
-    for telling in tellings:
-        stays[telling.part.observables] = False
-    return not stays.any()
-
-
-_Masked: TypeAlias = tuple[Thing | None, Floats, Floats]
-"""A thing, and its x and y among a part's observables as 0 and 1; None for what keeps together."""
-
-_Told: TypeAlias = tuple[Motion, Ints]
-"""A motion, and the observables that move in it."""
-
-
-class _Telling(Reach):
-    """The motions of one part, one after the other."""
+    # --- The motions, one after the other ----------------------------------------------------------
 
     def motions(self) -> Iterator[_Told]:
         if self.is_done:
@@ -523,6 +434,93 @@ class _Telling(Reach):
         return abs(speed) > 0.0 and float(away.max()) <= POSSIBLE * max(
             float(np.hypot(u, v).max()), abs(speed)
         )
+
+
+# --- Independent motions, each as simple as was found.
+
+MOST = 200
+"""Parts of the model that are put into words."""
+
+_KINDS = ("slide", "turn", "grow", "change", "together")
+"""Kinds of motion of one thing, the more telling first."""
+_FOLLOWED = frozenset(_KINDS) - {"together"}
+_LEAVING = {"slide": "slide along a curve that begins along {}", "turn": "turn"}
+"""Words for a motion that does not go on as it begins."""
+
+
+def motions(model: Model, lowered: Lowered, solution: Solution, freedom: Freedom) -> tuple[Motion, ...]:
+    """Returns independent motions of a model, the most interesting first, those of the whole drawing last.
+    Structures come before geometry, geometry before points and numbers; of these the large before the small,
+    and equals in the order of the text.
+    """
+    if not freedom.motions.found:
+        return ()
+    scene = Scene(model, lowered, freedom.motions, Bending(lowered.problem, solution))
+    tellings = [_Telling(scene, part) for part in freedom.motions.parts]
+    whole = list(_own_place(scene, tellings, model.root.path))
+    found = [told for telling in tellings[:MOST] for told in telling.motions()]
+    if not found:
+        return tuple(whole)
+    relations = Relations(model, scene)
+    found.sort(key=lambda told: _interest(told, scene))
+    return (*(replace(m, against=relations.against(m.things, at)) for m, at in found), *whole)
+
+
+def _interest(told: _Told, scene: Scene) -> tuple[int, int, int, int]:
+    motion, moving = told
+    known = [thing for path in motion.things if (thing := scene.known.get(path)) is not None]
+    rank = max((WHOLE if thing.rank == ROOT else thing.rank for thing in known), default=-1)
+    size = sum(thing.stop - thing.start for thing in known)
+    start = min((thing.start for thing in known), default=int(moving.min(initial=0)))
+    return -rank, -size, start, _KINDS.index(motion.kind)
+
+
+def _own_place(scene: Scene, tellings: Sequence[_Telling], root: str) -> Iterator[Motion]:
+    """Yields the motions in which everything moves as one, as motions of the part of the model that most
+    belongs to: then other motions are told of the others, and of what is small in it.
+    """
+    size = np.zeros(len(scene.places) + 1)
+    for axis, words in ((X, "slide along x"), (Y, "slide along y"), (NUMBER, "turn")):
+        pairs = [(t, velocity) for t in tellings if (velocity := t.of_all(axis)).any()]
+        if not pairs or not _all_move(scene, tellings, axis):
+            continue
+        if axis == NUMBER and not _is_one(scene, [t for t, _ in pairs]):
+            continue  # that several bodies turn as one is no more than that each of them is free
+        if not all(t.is_possible(velocity) for t, velocity in pairs):
+            continue
+        largest, velocity = max(
+            pairs, key=lambda pair: float(size[pair[0].part.observables].sum() + len(pair[1]))
+        )
+        # Motions along x and along y are often separate: both shall know the same things.
+        size[largest.part.observables[velocity != 0.0] + 1] = len(size)
+        largest.know(velocity)
+        moves = {path: rate for t, each in pairs for path, rate in t.rates(each).items()}
+        yield Motion("place", (root,), words, moves)
+
+
+def _is_one(scene: Scene, tellings: Sequence[_Telling]) -> bool:
+    """Tells whether the parts are connected by places with x in one of them and y in another."""
+    part = np.full(len(scene.places) + 1, -1)
+    for number, telling in enumerate(tellings):
+        part[telling.part.observables] = number
+    at = np.flatnonzero((scene.axis == X) & (part[:-1] >= 0) & (part[1:] >= 0))
+    return not connected(part[at], part[at + 1], len(tellings)).any()
+
+
+def _all_move(scene: Scene, tellings: Sequence[_Telling], axis: int) -> bool:
+    """Tells whether every place moves along an axis; for a turn, along both."""
+    stays = scene.anchor == 0
+    stays &= (scene.axis == axis) if axis != NUMBER else (scene.axis != NUMBER)
+    for telling in tellings:
+        stays[telling.part.observables] = False
+    return not stays.any()
+
+
+_Masked: TypeAlias = tuple[Thing | None, Floats, Floats]
+"""A thing, and its x and y among a part's observables as 0 and 1; None for what keeps together."""
+
+_Told: TypeAlias = tuple[Motion, Ints]
+"""A motion, and the observables that move in it."""
 
 
 def _try(tried: dict[bytes, _Masked], thing: Thing | None, xs: Floats, ys: Floats) -> None:

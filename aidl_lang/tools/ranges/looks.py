@@ -23,10 +23,9 @@ from numpy.typing import NDArray
 from aidl_lang.common.prose import counted, first_few, ticked
 from aidl_lang.common.records import record
 from aidl_lang.compiled import Compiled
-from aidl_lang.geometry.curves import Arc, Bounds, Line, Piece, all_bounds, union_bounds
+from aidl_lang.geometry.curves import Arc, Bounds, Line, Piece, union_bounds
 from aidl_lang.geometry.drawing import Drawing
-from aidl_lang.geometry.region import region_polygons
-from aidl_lang.geometry.sections import Section, fill, intersection
+from aidl_lang.geometry.sections import Section, fill
 from aidl_lang.geometry.solved import SolvedGeometry, SolvedModel, SolvedStructure
 from aidl_lang.tools.ends import Place, clause
 from aidl_lang.tools.sweeping.bundle import OF_KIND, Fault, fault
@@ -188,7 +187,7 @@ def _closed(structure: SolvedStructure) -> Iterator[tuple[str, Bounds]]:
 
 
 def _box(curves: Iterable[Piece]) -> Bounds | None:
-    boxes = all_bounds(curves)
+    boxes = [curve.box for curve in curves]
     return union_bounds(boxes) if boxes else None
 
 
@@ -201,14 +200,14 @@ def _see_contacts(found: Look, model: SolvedModel, drawing: Drawing) -> None:
 
     @cache
     def section(path: str) -> Section:
-        return fill(region_polygons(regions[path], _TOUCHING * drawing.size), "EvenOdd")
+        return fill(regions[path].polygons(_TOUCHING * drawing.size), "EvenOdd")
 
     def is_overlap(a: str, b: str) -> bool:
-        common = intersection(section(a), section(b))
-        if common.is_empty():
+        common = section(a) & section(b)
+        if common.is_empty:
             return False
-        left, bottom, right, top = common.bounds()
-        return common.area() > _TOUCHING * drawing.size * (right - left + top - bottom)
+        left, bottom, right, top = common.box
+        return common.area > _TOUCHING * drawing.size * (right - left + top - bottom)
 
     found.near = frozenset((a, b) for a, b in pairs if _meet(heights.get(a), heights.get(b)))
     found.overlaps = frozenset(pair for pair in found.near if is_overlap(*pair))

@@ -18,7 +18,7 @@ from aidl_lang.export.job import Job, Options
 from aidl_lang.export.marks import Group
 from aidl_lang.export.picture import picture
 from aidl_lang.export.svg import face_path, open_path, to_svg
-from aidl_lang.geometry.curves import Bounds, Circle, Vec, is_finite, union_bounds
+from aidl_lang.geometry.curves import Bounds, Circle, Vec, union_bounds
 from aidl_lang.geometry.drawing import Drawing
 from aidl_lang.geometry.solved import Motion, SolvedGeometry, SolvedStructure
 from aidl_lang.pipeline import Compiled, Settings
@@ -340,7 +340,7 @@ def _lines(number: int, drawn: DrawnElement, elements: Elements) -> PointedShape
         return None
     if any(part.path in elements.number for part in geometry.parts):
         return None
-    pieces = [piece for piece in curves_of(geometry) if is_finite(piece)]
+    pieces = [piece for piece in curves_of(geometry) if piece.is_finite()]
     return PointedShape(number, open_path(pieces), extent(pieces)) if pieces else None
 
 
