@@ -12,8 +12,8 @@ from functools import cached_property
 
 from aidl_lang.building import curves
 from aidl_lang.building import expression as ex
-from aidl_lang.building.curves import defining, view, xy
-from aidl_lang.building.expression import Expression, Unknown
+from aidl_lang.building.curves import defining, towards, view, xy
+from aidl_lang.building.expression import Expression, Place, Unknown
 from aidl_lang.building.model import Geometry, Measurement, Recipe, Structure, chain, convert
 from aidl_lang.building.values import Num, PointVal, Value, leaves, length, point
 from aidl_lang.checking.types import BoxType
@@ -53,9 +53,9 @@ class Box:
             case "left" | "right" | "top" | "bottom":
                 return length(self.side(name))
             case "width" | "height":
-                return length(ex.sub(self.side(high), self.side(low)))
+                return length(self.side(high) - self.side(low))
             case "center_x" | "center_y":
-                return length(ex.half(ex.add(self.side(low), self.side(high))))
+                return length((self.side(low) + self.side(high)) * 0.5)
             case "center":
                 return self._at("center", "center")
             case _:
@@ -188,17 +188,17 @@ def _extreme_of(candidates: list[Expression], side: str) -> Expression:
         return ex.ZERO
     if len(candidates) == 1:
         return candidates[0]
-    return ex.apply("maximum" if side in ("right", "top") else "minimum", *candidates)
+    return ex.apply(towards(side).further, *candidates)
 
 
 def _extremes(
     source: Source, here: Structure, side: str, ignored: frozenset[Structure]
 ) -> Iterator[Expression]:
     if isinstance(source, PointVal):
-        yield xy(source)[side in ("top", "bottom")]
+        yield xy(source)[towards(side).axis]
     elif isinstance(source, Geometry):
         if source.type == "point":
-            yield xy(view(source, here)["at"])[side in ("top", "bottom")]
+            yield xy(view(source, here)["at"])[towards(side).axis]
         else:
             for primitive in source.primitives(even_construction=True):
                 yield from _curve(primitive, here, side)
@@ -212,9 +212,9 @@ def _structure(
     """Yields candidates for the extreme of a structure within the `whole` that has the box."""
     if source.plan:
         left, bottom, width, height = source.plan
-        right, top = ex.add(left, width), ex.add(bottom, height)
+        right, top = left + width, bottom + height
         for corner in ((left, bottom), (right, bottom), (left, top), (right, top)):
-            yield convert(*corner, source, here)[side in ("top", "bottom")]
+            yield convert(Place(*corner), source, here)[towards(side).axis]
     for primitive in source.drawn():
         if not _lies_inside(primitive, whole, ignored):
             yield from _curve(primitive, here, side)
@@ -276,7 +276,7 @@ def _made(outline: Geometry, recipe: Recipe, here: Structure, side: str) -> Iter
         case kind if kind in _AS_WIDE:
             grown = ex.ZERO
         case "thick" if recipe.words["caps"] == recipe.words["joins"] == "round":
-            grown = ex.half(recipe.numbers["width"].expression)
+            grown = recipe.numbers["width"].expression * 0.5
         case "offset" if (
             recipe.words["corners"] == "round" and (out := recipe.numbers["distance"]).value >= 0
         ):
@@ -286,7 +286,7 @@ def _made(outline: Geometry, recipe: Recipe, here: Structure, side: str) -> Iter
         return
     for source in sources:
         for extreme in _extremes(source, here, side, frozenset()):
-            yield ex.apply("add" if side in ("right", "top") else "sub", extreme, grown)
+            yield towards(side).outwards(extreme, grown)
 
 
 def foreseen(*roots: Expression) -> tuple[Expression, ...]:
@@ -315,21 +315,21 @@ def _foreseen_side(measured: Measurement) -> Expression:
     assert isinstance(outline, Geometry)
     assert outline.recipe is not None
     assert here is not None
-    recipe, is_high = outline.recipe, side in ("right", "top")
+    recipe, (_, outwards, further) = outline.recipe, towards(side)
     reached = (
         (e for g in operand for e in _extremes(g, here, side, frozenset())) for operand in recipe.operands
     )
     extents = foreseen(*[_extreme_of(list(dict.fromkeys(each)), side) for each in reached])
     match recipe.kind:
         case "clip" | "intersect":
-            return ex.apply("minimum" if is_high else "maximum", *extents)
+            return ex.apply("minimum" if further == "maximum" else "maximum", *extents)
         case "offset":
             out = recipe.numbers["distance"].expression
         case "thick":
-            out = ex.half(recipe.numbers["width"].expression)
+            out = recipe.numbers["width"].expression * 0.5
         case _:
             return extents[0]
-    return ex.apply("add" if is_high else "sub", extents[0], out)
+    return outwards(extents[0], out)
 
 
 def constrain_sources(outline: Geometry, here: Structure) -> str:

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 
 from aidl_lang.building import expression as ex
 from aidl_lang.building.boxes import SIDES
-from aidl_lang.building.curves import direction, distance, polar
-from aidl_lang.building.expression import Expression
+from aidl_lang.building.curves import direction, distance, polar, xy
+from aidl_lang.building.expression import Expression, Place
 from aidl_lang.building.model import Constraint, Geometry, Holder, Measurement, is_size
 from aidl_lang.building.state import Arguments, Env, Interpreter, Stop
 from aidl_lang.building.values import Exactness, Nothing, Num, PointVal, TextVal, Value, length, point
@@ -66,7 +66,7 @@ def check_bare_points(it: Interpreter, node: ast.Call, arguments: Mapping[str, V
 
 
 def _apart(a: PointVal, b: PointVal) -> float:
-    return math.hypot(b.x.value - a.x.value, b.y.value - a.y.value)
+    return (b.place - a.place).length.value
 
 
 def differ(a: float, b: float) -> float:
@@ -228,9 +228,9 @@ def _coordinate(
     first, base, since = anchors[axis]
     offset = number.value - first.value
     if Exactness.PARAM in (number.status, first.status):
-        return ex.add(base, ex.constant(offset))
+        return base + offset
     kept = it.unknown(offset, holder, f"{name}.d{axis}", dimension=LENGTH, kept=True, since=since)
-    return ex.add(base, kept)
+    return base + kept
 
 
 def _point(it: Interpreter, g: Geometry, a: Arguments, env: Env) -> None:
@@ -249,7 +249,7 @@ def loose_point(it: Interpreter, at: PointVal, g: Geometry) -> PointVal:
     return point(*loose_place(it, at, g))
 
 
-def loose_place(it: Interpreter, at: PointVal, of: Holder) -> tuple[Expression, Expression]:
+def loose_place(it: Interpreter, at: PointVal, of: Holder) -> Place:
     """Returns the coordinates of a point or a frame: exact ones as they are, else unknowns `x` and `y`."""
     owner, moved = (of.owner, None) if isinstance(of, Geometry) else (of.parent or of, of)
 
@@ -259,7 +259,7 @@ def loose_place(it: Interpreter, at: PointVal, of: Holder) -> tuple[Expression, 
         made = it.unknown(n.value, of, axis, owner=owner, dimension=LENGTH, frame_of=moved)
         return it.became(n, made, of, axis)
 
-    return coordinate(at.x, "x"), coordinate(at.y, "y")
+    return Place(coordinate(at.x, "x"), coordinate(at.y, "y"))
 
 
 def _points(it: Interpreter, g: Geometry, a: Arguments, names: Sequence[str]) -> dict[str, Value]:
@@ -307,7 +307,7 @@ def _circle(it: Interpreter, g: Geometry, a: Arguments, env: Env) -> None:
         g.fields["radius"] = _size(it, g, a, "radius")
     else:
         diameter = _size(it, g, a, "diameter")
-        g.fields |= {"diameter": diameter, "radius": length(ex.half(diameter.expression))}
+        g.fields |= {"diameter": diameter, "radius": length(diameter.expression * 0.5)}
 
 
 def _arc(it: Interpreter, g: Geometry, a: Arguments, env: Env) -> None:
@@ -361,12 +361,9 @@ def _arc_by_radius(it: Interpreter, g: Geometry, a: Arguments) -> None:
     height = (max(reach * reach - chord * chord / 4, 0.0)) ** 0.5
     # Counter-clockwise and shorter than half a turn, the centre lies to the left of the chord.
     side = 1.0 if (a.get("large") is True) == g.clockwise else -1.0
-    along = direction(start, end).value + 90.0 * side
-    c, s = ex.exact_turn(along)
-    assert isinstance(start, PointVal)
-    assert isinstance(end, PointVal)
-    x = (start.x.value + end.x.value) / 2 + height * c
-    y = (start.y.value + end.y.value) / 2 + height * s
+    c, s = ex.exact_turn(direction(start, end).value + 90.0 * side)
+    (ax, ay), (bx, by) = xy(start).written, xy(end).written
+    x, y = (ax + bx) / 2 + height * c, (ay + by) / 2 + height * s
     center = PointVal(Num(ex.constant(x), LENGTH), Num(ex.constant(y), LENGTH))
     g.fields["center"] = positions(it, [center], g, ["center"])[0]
 

@@ -14,7 +14,6 @@ from aidl_lang.building.curves import (
     NOWHERE,
     STILL,
     Motion,
-    Place,
     after,
     clockwise,
     mirrored_at_line,
@@ -26,6 +25,7 @@ from aidl_lang.building.curves import (
     view,
     xy,
 )
+from aidl_lang.building.expression import Place
 from aidl_lang.building.members import read
 from aidl_lang.building.model import Frame, Geometry, Structure, convert, reach_of
 from aidl_lang.building.outlines import keep_unnamed
@@ -171,7 +171,7 @@ class Copier:
     @property
     def _swaps_sides(self) -> bool:
         """True if left becomes right; otherwise a reflection exchanges top and bottom."""
-        return self.owner is not None and self.motion.mirrored and self.motion.cos.value > 1e-9
+        return self.owner is not None and self.motion.mirrored and self.motion.facing.x.value > 1e-9
 
     def _renamed(self, name: str, names: Scope) -> str:
         """Returns the name of a part after a reflection: the part called left is on the left again."""
@@ -279,11 +279,11 @@ class Copier:
         self.structures[source] = copy
         if source.plan is not None:
             x, y, width, height = source.plan
-            grown = (ex.mul(self.motion.scale, e) for e in (width, height))
-            copy.plan = (*self.motion.place(x, y), *grown)  # type: ignore[assignment]
+            x, y = self.motion.place(Place(x, y))
+            copy.plan = x, y, self.motion.scale * width, self.motion.scale * height
         for child in source.children:
             frame = child.frame
-            inner = Frame(*self.motion.place(frame.x, frame.y), frame.rotation, frame.mirrored)
+            inner = Frame(*self.motion.place(frame.origin), frame.rotation, frame.mirrored)
             self.structure(child, copy, child.name, inner)
         self._members(source, copy)
         for child in source.children:
@@ -395,11 +395,9 @@ def centre_of(it: Interpreter, value: Value, node: ast.Node, env: Env) -> Place:
         case PointVal():
             return xy(value)
         case Structure():
-            return convert(*NOWHERE, value, here)
+            return convert(NOWHERE, value, here)
         case StructureCopy(source, motion):
-            return motion.place(
-                *(convert(*NOWHERE, source, here) if isinstance(source, Structure) else NOWHERE)
-            )
+            return motion.place(convert(NOWHERE, source, here) if isinstance(source, Structure) else NOWHERE)
         case Geometry():
             if (known := _own_centre(it, value, node, here)) is not None:
                 return xy(known)
@@ -408,8 +406,7 @@ def centre_of(it: Interpreter, value: Value, node: ast.Node, env: Env) -> Place:
         return NOWHERE
     middle = box.field("center")
     assert isinstance(middle, PointVal)
-    x, y = spelled_out(*xy(middle))
-    return x, y
+    return Place(*spelled_out(*middle.place))
 
 
 def _own_centre(it: Interpreter, g: Geometry, node: ast.Node, here: Structure) -> PointVal | None:
@@ -445,7 +442,7 @@ def _reflection(it: Interpreter, about: Value, node: ast.Call, env: Env) -> Moti
                 start, end = as_written(start), as_written(end)  # written in the call, it is nothing to move
             assert isinstance(start, PointVal)
             assert isinstance(end, PointVal)
-            if any(p.value != q.value for p, q in zip(xy(start), xy(end), strict=True)):
+            if start.place.written != end.place.written:
                 return mirrored_at_line(start, end)
             message, hint = "the line to mirror about has no length", "give its ends different places"
         case TextVal(word):
@@ -464,7 +461,7 @@ def _copy(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
         about = NOWHERE if a.keys() <= {"x", "by"} else centre_of(it, a["x"], node, env)
     to = xy(a["center"]) if "center" in a else about
     if "by" in a:
-        to = ex.add(to[0], xy(a["by"])[0]), ex.add(to[1], xy(a["by"])[1])
+        to = to + xy(a["by"])
     motion = _motion(it, a.get("angle"), a.get("scale"), about, to, node)
     if motion is None:
         return NOTHING
@@ -495,7 +492,7 @@ def motion_for(it: Interpreter, a: Arguments, centre: Callable[[], Place], node:
         dx, dy = (a.get(name, _NONE) for name in ("dx", "dy"))
         assert isinstance(dx, Num)
         assert isinstance(dy, Num)
-        return translation((dx.expression, dy.expression))
+        return translation(Place(dx.expression, dy.expression))
     about = xy(a["about"]) if "about" in a else centre()
     return _motion(it, a.get("angle"), a.get("factor"), about, about, node)
 

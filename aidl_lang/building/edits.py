@@ -11,8 +11,9 @@ from aidl_lang.building import expression as ex
 from aidl_lang.building.calls import bound, hoist_values
 from aidl_lang.building.coerce import as_written, whole
 from aidl_lang.building.copies import Copier, centre_of, motion_for
-from aidl_lang.building.curves import DIRECTIONS, STILL, Motion, Place, after, turned, xy
+from aidl_lang.building.curves import DIRECTIONS, STILL, Motion, after, turned, xy
 from aidl_lang.building.evaluate import evaluate, iterate, truth, turn_scope
+from aidl_lang.building.expression import Place
 from aidl_lang.building.model import Geometry, Structure
 from aidl_lang.building.overloads import arranged
 from aidl_lang.building.state import Env, Interpreter, Reach, Scope
@@ -169,7 +170,7 @@ def motion_of(
     """Returns all edits as one motion after that of `at`; one that fails is reported and changes nothing."""
     motion = placed
     for edit in edits:
-        place = motion.place(*centre)
+        place = motion.place(centre)
         now = thing
         if motion is not STILL and isinstance(thing, Geometry):
             now = Copier(it, here, motion).geometry(thing)
@@ -293,7 +294,7 @@ def frame_edited(
     if motion.turn.value % 360.0 == 0.0:
         return moved, turn
     written = turn or number(0.0, ANGLE)
-    return moved, replace(written, expression=ex.add(written.expression, motion.turn))
+    return moved, replace(written, expression=written.expression + motion.turn)
 
 
 def check_edit(it: Interpreter, call: ast.Call, env: Env) -> None:
@@ -399,7 +400,7 @@ class _Editing:
 
     def run(self) -> Value:
         centre = centre_of(self.it, self.first, self.cause, self.env)
-        written = ex.constant(centre[0].value), ex.constant(centre[1].value)
+        written = Place(*map(ex.constant, centre.written))
         start = self.placed.motion if self.placed is not None else STILL
         motion = motion_of(self.it, self.edits, self.first, written, self.env.here, start)
         if (made := self._by_arguments(motion)) is not None:
@@ -407,12 +408,11 @@ class _Editing:
         if self.refers is not None:
             follows(self.it, self.cause, self.node.name.text, self.refers)
             return self.first
-        unturned = Motion(written, motion.place(*written), scale=motion.scale)
+        unturned = Motion(written, motion.place(written), scale=motion.scale)
         if (made := self._by_arguments(unturned)) is not None:
             centre = centre_of(self.it, made, self.cause, self.env)
             return self._as_whole(made, replace(motion, about=centre, to=centre, scale=ex.ONE))
-        away = [ex.sub(b, a) for a, b in zip(written, motion.place(*written), strict=True)]
-        to = ex.add(centre[0], away[0]), ex.add(centre[1], away[1])
+        to = centre + (motion.place(written) - written)
         return self._as_whole(self.first, replace(motion, about=centre, to=to))
 
     def _as_whole(self, made: Geometry, motion: Motion) -> Geometry:
@@ -421,7 +421,7 @@ class _Editing:
         asked = self.placed.turn if self.placed is not None else None
         if asked is not None and asked.status is Exactness.GUESS:
             turn = self.it.unknown(motion.turn.value, made, "rotation", dimension=ANGLE)
-            motion = replace(motion, turn=turn, cos=ex.cos(turn), sin=ex.sin(turn))
+            motion = replace(motion, turn=turn, facing=ex.towards(turn))
         turned = Copier(self.it, self.env.here, motion, span=made.span).geometry(made)
         turned.source = None  # to the author it is what was written, and no copy
         return turned

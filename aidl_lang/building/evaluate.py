@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import operator
 from collections.abc import Callable
 from functools import partial
 
@@ -239,7 +240,7 @@ def _unary(it: Interpreter, node: ast.Unary, env: Env) -> Value:
 
 
 def _negative(value: Num) -> Num:
-    return Num(ex.apply("neg", value.expression), value.dimension, value.status)
+    return Num(-value.expression, value.dimension, value.status)
 
 
 def _binary(it: Interpreter, node: ast.Binary, env: Env) -> Value:
@@ -288,10 +289,10 @@ _DIMENSION: dict[str, Callable[[units.MaybeDimension, units.MaybeDimension], uni
     "/": units.divide,
 }
 _OPERATION: dict[str, Callable[[ex.Expression, ex.Expression], ex.Expression]] = {
-    "+": ex.add,
-    "-": ex.sub,
-    "*": ex.mul,
-    "/": ex.div,
+    "+": operator.add,
+    "-": operator.sub,
+    "*": operator.mul,
+    "/": operator.truediv,
     "^": partial(ex.apply, "power"),
 }
 
@@ -355,8 +356,8 @@ def _no_value(it: Interpreter, node: ast.Node, why: str, *hints: str) -> Nothing
 def _comparison(it: Interpreter, node: ast.Comparison, env: Env) -> Value:
     values = [evaluate(it, operand, env) for operand in node.operands]
     result: Value = True
-    for i, operator in enumerate(node.operators):
-        pair = compare(it, operator, values[i], values[i + 1], node, env, node.operands[i : i + 2])
+    for i, relation in enumerate(node.operators):
+        pair = compare(it, relation, values[i], values[i + 1], node, env, node.operands[i : i + 2])
         result = conjunction(it, "and", result, pair, node)
     return result
 

@@ -188,7 +188,7 @@ def _of_angle(op: Callable[[Expression], Expression]) -> Function:
 
 def _to_angle(op: str) -> Function:
     degrees = ex.constant(1 / DEGREE)
-    return _of_one(lambda value: ex.mul(ex.apply(op, value), degrees), lambda _: ANGLE)
+    return _of_one(lambda value: ex.apply(op, value) * degrees, lambda _: ANGLE)
 
 
 def _atan2(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
@@ -258,7 +258,7 @@ def _sum(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
 def _total(values: list[Num], dimension: MaybeDimension) -> Num:
     total, status = ex.ZERO, Exactness.NUMBER
     for value in values:
-        total, status = ex.add(total, value.expression), max(status, value.status)
+        total, status = total + value.expression, max(status, value.status)
     return Num(total, dimension, status)
 
 
@@ -416,7 +416,7 @@ def _ink(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
 FUNCTIONS: dict[str, Function] = {
     "sin": _of_angle(ex.sin),
     "cos": _of_angle(ex.cos),
-    "tan": _of_angle(lambda angle: ex.apply("tan", ex.mul(angle, ex.constant(DEGREE)))),
+    "tan": _of_angle(lambda angle: ex.apply("tan", angle * DEGREE)),
     "asin": _to_angle("asin"),
     "acos": _to_angle("acos"),
     "atan": _of_one(lambda value: ex.atan2(value, ex.ONE), lambda _: ANGLE),

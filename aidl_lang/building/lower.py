@@ -98,7 +98,7 @@ class Placing(Generic[N]):
     def _step(self, s: Structure) -> _Step[N]:
         frame, number, turn = s.frame, self.number, None
         if not frame.is_level:
-            cosine, sine = frame.cos_sin()
+            cosine, sine = ex.towards(frame.rotation)
             turn = number(cosine), number(sine)
         return _Step(number(frame.x), number(frame.y), turn, frame.mirrored)
 
@@ -493,7 +493,7 @@ def seen(s: Structure) -> Iterator[tuple[Geometry | Structure, str, _Seen]]:
     if s.plan:
         left, bottom, width, height = s.plan
         yield s, s.path, (left, bottom)
-        yield s, s.path, (ex.add(left, width), ex.add(bottom, height))
+        yield s, s.path, (left + width, bottom + height)
 
 
 def _seen_geometry(geometry: Geometry) -> Iterator[tuple[str, _Seen]]:

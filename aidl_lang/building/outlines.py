@@ -9,6 +9,7 @@ from aidl_lang.building import expression as ex
 from aidl_lang.building.boxes import spelled_out
 from aidl_lang.building.coerce import as_written, may_read, owners_of
 from aidl_lang.building.construct import size
+from aidl_lang.building.expression import Place
 from aidl_lang.building.model import (
     SIZES,
     Finish,
@@ -32,6 +33,7 @@ from aidl_lang.building.values import (
     leaves,
     length,
     members,
+    point,
 )
 from aidl_lang.checking.builtins import FINISHES, OUTLINES
 from aidl_lang.checking.units import LENGTH
@@ -115,12 +117,12 @@ def _lattice(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> tuple[G
     """
     angle = a.get("angle")
     frame = Frame(rotation=angle.expression if isinstance(angle, Num) else ex.ZERO)
-    ways = [(ex.ZERO, ex.ZERO), (ex.ONE, ex.ZERO), (ex.ZERO, ex.ONE), frame.turn(ex.ONE, ex.ZERO)]
+    x, y = Place(ex.ONE, ex.ZERO), Place(ex.ZERO, ex.ONE)
+    ways = [Place(ex.ZERO, ex.ZERO), x, y, frame.turn(x)]
     for name in ("by", "row"):
         if isinstance(p := a.get(name), PointVal):
-            ways.append(frame.turn(p.x.expression, p.y.expression))
-    points = [PointVal(length(x), length(y)) for x, y in ways]
-    return tuple(_as_point(it, p, node, env) for p in points)
+            ways.append(frame.turn(p.place))
+    return tuple(_as_point(it, point(*way), node, env) for way in ways)
 
 
 def _as_point(it: Interpreter, p: PointVal, node: ast.Call, env: Env) -> Geometry:

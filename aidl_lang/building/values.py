@@ -7,7 +7,7 @@ from enum import IntEnum
 from typing import TYPE_CHECKING, TypeAlias, TypeVar
 
 from aidl_lang.building import expression as ex
-from aidl_lang.building.expression import Expression
+from aidl_lang.building.expression import Expression, Place
 from aidl_lang.checking.types import (
     ANY,
     ListType,
@@ -76,6 +76,10 @@ class PointVal:
 
     x: Num
     y: Num
+
+    @property
+    def place(self) -> Place:
+        return Place(self.x.expression, self.y.expression)
 
 
 @record(slots=True)
