@@ -8,7 +8,7 @@ from graphlib import CycleError, TopologicalSorter
 from aidl_lang.building.coerce import constant
 from aidl_lang.building.evaluate import evaluate
 from aidl_lang.building.functions import color_of
-from aidl_lang.building.model import Geometry, Structure
+from aidl_lang.building.model import Geometry, Holder, Structure
 from aidl_lang.building.state import Env, Interpreter, Reach, Scope
 from aidl_lang.building.values import Nothing, Num, TextVal, Value, each_of, holds, kind_of
 from aidl_lang.checking import units
@@ -260,7 +260,7 @@ def read_attributes(
     it: Interpreter, s: Structure, attributes: Iterable[ast.Attribute], scope: Scope, body: Scope
 ) -> None:
     """Reads the attributes that the checker has accepted; `@clip` is read in the scope of the body."""
-    for name, values, attribute in _read(it, attributes, Env(scope, s.parent or s, Reach.OWN)):
+    for name, values, attribute in _read(it, attributes, Env(scope, s.parent or s)):
         if name in STACKING:
             state_order(it, s, StatedOrder(name, attribute, scope))
         elif name == CLIP:
@@ -270,28 +270,20 @@ def read_attributes(
             s.attributes[name] = tuple(values)
 
 
-def read_own_attributes(
-    it: Interpreter, node: ast.Assign, value: Value, container: Structure | Geometry, scope: Scope
-) -> None:
+def read_own_attributes(it: Interpreter, node: ast.Assign, value: Value, env: Env) -> None:
     """Reads the attributes of a geometry; reports those for structures only."""
-    things = list(each_of(value, Geometry))
-    here = container if isinstance(container, Structure) else container.owner
-    for name, values, attribute in _read(it, node.attributes, Env(scope, here, Reach.OWN)):
-        is_own = here is container and name in OWN_LOOKS.get(here.kind, ())
+    things, here = list(each_of(value, Geometry)), env.here
+    for name, values, attribute in _read(it, node.attributes, env):
+        is_own = here is env.holder and name in OWN_LOOKS.get(here.kind, ())
         if not things or not (name == "note" or is_own):
-            _misplaced(it, node, name, attribute, value, container)
+            _misplaced(it, node, attribute, value, env.holder)
         elif _fits(it, name, values, attribute) and _shows(it, name, values, attribute, here):
             for thing in things:
                 thing.attributes = thing.attributes | {name: tuple(values)}
 
 
 def _misplaced(
-    it: Interpreter,
-    node: ast.Assign,
-    name: str,
-    attribute: ast.Attribute,
-    value: Value,
-    container: Structure | Geometry,
+    it: Interpreter, node: ast.Assign, attribute: ast.Attribute, value: Value, container: Holder
 ) -> None:
     written, thing = attribute.span.one_line, node.name.text
     if not any(each_of(value, Geometry)):

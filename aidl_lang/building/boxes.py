@@ -15,7 +15,7 @@ from aidl_lang.building import expression as ex
 from aidl_lang.building.curves import defining, towards, view, xy
 from aidl_lang.building.expression import Expression, Place, Unknown
 from aidl_lang.building.model import Geometry, Measurement, Recipe, Structure, chain, convert
-from aidl_lang.building.values import Num, PointVal, Value, leaves, length, point
+from aidl_lang.building.values import Num, PointVal, Value, certain, leaves, length, point
 from aidl_lang.checking.types import BoxType
 from aidl_lang.common.records import record
 
@@ -67,9 +67,7 @@ class Box:
     def _at(self, vertical: str, horizontal: str) -> PointVal:
         x = self.field("center_x" if horizontal == "center" else horizontal)
         y = self.field("center_y" if vertical == "center" else vertical)
-        assert isinstance(x, Num)
-        assert isinstance(y, Num)
-        return point(x.expression, y.expression)
+        return point(certain(x, Num).expression, certain(y, Num).expression)
 
 
 @record(frozen=False, eq=False)
@@ -310,12 +308,18 @@ def with_measured(
     return tuple(replaced.get(root, root) for root in roots)
 
 
-def _foreseen_side(measured: Measurement) -> Expression:
-    side, (outline,), here = measured.kind, measured.of, measured.here
+def _made_of(side: Measurement) -> tuple[Recipe, Structure]:
+    """Returns the recipe of the outline whose side is measured, and the structure that sees it."""
+    outline, here = side.of[0], side.here
     assert isinstance(outline, Geometry)
     assert outline.recipe is not None
     assert here is not None
-    recipe, (_, outwards, further) = outline.recipe, towards(side)
+    return outline.recipe, here
+
+
+def _foreseen_side(measured: Measurement) -> Expression:
+    side, (recipe, here) = measured.kind, _made_of(measured)
+    _, outwards, further = towards(side)
     reached = (
         (e for g in operand for e in _extremes(g, here, side, frozenset())) for operand in recipe.operands
     )
@@ -352,12 +356,9 @@ def unmoved(*roots: Expression) -> frozenset[Unknown]:
     held: set[Unknown] = set()
     for node in ex.nodes(roots, only_open=True):
         if isinstance(node.payload, Measurement):
-            (outline,), here = node.payload.of, node.payload.here
-            assert isinstance(outline, Geometry)
-            assert outline.recipe is not None
-            assert here is not None
+            recipe, here = _made_of(node.payload)
             first, *others = (
-                {u for g in operand for u in source_unknowns(g, here)} for operand in outline.recipe.operands
+                {u for g in operand for u in source_unknowns(g, here)} for operand in recipe.operands
             )
             held |= set().union(*others) - first
     return frozenset(held)

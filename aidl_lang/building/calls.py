@@ -8,9 +8,9 @@ from aidl_lang.building.boxes import box_of
 from aidl_lang.building.coerce import all_within, as_point, edge_coordinate, items_of, owners_of
 from aidl_lang.building.construct import CONSTRUCTORS, construct, positions, refuses_measure, size, turn
 from aidl_lang.building.curves import ask_to_turn, is_of_directions
-from aidl_lang.building.evaluate import evaluate, iterate, truth, turn_scope
+from aidl_lang.building.evaluate import evaluate, truth, turns
 from aidl_lang.building.functions import FUNCTIONS
-from aidl_lang.building.model import Condition, Geometry, Structure, all_parts, reach_of
+from aidl_lang.building.model import Condition, Geometry, all_parts, reach_of
 from aidl_lang.building.outlines import remember, usable
 from aidl_lang.building.overloads import CallSite, arranged, candidates_of, no_overload, placing, site_of
 from aidl_lang.building.state import (
@@ -36,6 +36,7 @@ from aidl_lang.building.values import (
     RangeVal,
     RecordVal,
     Value,
+    certain,
     members,
     numbers_of,
     spliced,
@@ -105,12 +106,10 @@ def _env_of_arguments(site: CallSite, env: Env) -> Env:
     """Returns the environment of a call's arguments, which may reach further or less far than around it."""
     if env.reach is Reach.OWN and site.instantiates:
         # References passed to a template are tied by its instantiating structure, which may reach further.
-        return Env(env.scope, env.here, Reach.SUBTREE)
+        return env.reaching(Reach.SUBTREE)
     if env.reach is Reach.OWN and (site.derives or site.connects):
-        return Env(env.scope, env.here, Reach.ABOVE)
-    if env.reach is Reach.ABOVE and site.draws and not site.connects:
-        return Env(env.scope, env.here, Reach.OWN)
-    return env
+        return env.reaching(Reach.ABOVE)
+    return env.reaching(Reach.OWN) if env.reach is Reach.ABOVE and site.draws and not site.connects else env
 
 
 def _given(
@@ -218,7 +217,7 @@ def _inside(
     it: Interpreter, candidate: Candidate, arguments: Arguments, parameters: Sequence[ast.Parameter], env: Env
 ) -> Env:
     """Returns the environment of the body of a definition: its parameters, with what they get."""
-    inner = Env(Scope(candidate.scope), env.here, env.reach)
+    inner = env.within(Scope(candidate.scope))
     for parameter, (name, kind, _) in zip(parameters, candidate.signature.parameters, strict=True):
         value = arguments.get(name)
         inner.scope.values[name] = default_of(it, parameter, kind, inner) if value is None else value
@@ -241,25 +240,21 @@ def run_items(it: Interpreter, block: ast.Block, env: Env) -> Value:
     scope.values |= {s.name.text: LetBinding(s.value, scope) for s in named}
     found: list[Value] = []
     for statement in block.statements:
-        inner = Env(scope, env.here, env.reach)
         match statement:
             case ast.ExpressionStatement(value=value):
-                found.append(evaluate(it, value, inner))
+                found.append(evaluate(it, value, env))
             case ast.Equation():
                 if not any(d.code == "N0501" and d.span == statement.span for d in it.diagnostics):
                     it.report("N0501", "`=` inside `constraint` is read as `==`", statement)
-                found.append(evaluate(it, statement.meant, inner))
+                found.append(evaluate(it, statement.meant, env))
             case ast.Constrain(items=items):
-                found.append(run_items(it, items, inner))
-            case ast.For(variables=variables, iterable=iterable, body=body):
-                for item in iterate(it, iterable, inner) or ():
-                    it.count_turn(statement)
-                    turn = turn_scope(it, scope, variables, item, statement)
-                    found.append(run_items(it, body, Env(turn, env.here, env.reach)))
+                found.append(run_items(it, items, env))
+            case ast.For(body=body):
+                found += [run_items(it, body, turn) for turn in turns(it, statement, env) or ()]
             case ast.If(test=test, then=then, otherwise=otherwise):
-                chosen = then if truth(it, evaluate(it, test, inner), test) else otherwise
+                chosen = then if truth(it, evaluate(it, test, env), test) else otherwise
                 if chosen is not None:
-                    found.append(run_items(it, chosen, inner))
+                    found.append(run_items(it, chosen, env))
             case ast.Let() | ast.Assign():
                 pass
             case _:
@@ -277,8 +272,7 @@ def _says_nothing(it: Interpreter, node: ast.Call, only: Value) -> None:
 
 
 def _shape(it: Interpreter, candidate: Candidate, arguments: Arguments, node: ast.Call, env: Env) -> Value:
-    definition = candidate.signature.node
-    assert isinstance(definition, ast.ShapeDefinition)
+    definition = certain(candidate.signature.node, ast.ShapeDefinition)
     it.count_entity(node)
     geometry = Geometry(definition.name.text, env.here, it.place(node))
     scope = Scope(candidate.scope, geometry)
@@ -289,11 +283,11 @@ def _shape(it: Interpreter, candidate: Candidate, arguments: Arguments, node: as
     for parameter, (name, kind, _) in pairs:
         if name not in given:
             scope.values.update(given)  # a default may mention the parameters before it
-            given[name] = default_of(it, parameter, kind, Env(scope, env.here, env.reach))
+            given[name] = default_of(it, parameter, kind, env.within(scope))
         if isinstance(given[name], Nothing):
             return NOTHING
     _bind_shape(it, definition.parameters, candidate.signature, given, geometry, scope)
-    run_block(it, definition.body.statements, scope, env.here)
+    run_block(it, definition.body.statements, Env(scope, env.here))
     _bind_above(it, geometry, given, env)
     return geometry
 
@@ -389,15 +383,15 @@ def _bind_inside(
 # --- Bodies: the declarations that hold in the whole of one, and its statements one by one.
 
 
-def run_block(it: Interpreter, statements: Sequence[ast.Statement], scope: Scope, here: Structure) -> None:
+def run_block(it: Interpreter, statements: Sequence[ast.Statement], env: Env) -> None:
     """Runs the statements of a body. Callables and constants are visible in the whole of it."""
-    hoist_callables(it, scope, statements)
-    hoist_values(scope, statements, here)
-    ahead = Ahead(statements, scope, here)
+    hoist_callables(it, env.scope, statements)
+    hoist_values(env, statements)
+    ahead = Ahead(statements, env)
     it.ahead.append(ahead)
     try:
         for ahead.next, statement in enumerate(statements, start=1):
-            execute(it, statement, scope, here)
+            _execute(it, statement, env)
     finally:
         it.ahead.pop()
 
@@ -412,22 +406,23 @@ def hoist_callables(it: Interpreter, scope: Scope, statements: Iterable[ast.Stat
             scope.define(Candidate(it.signatures[node], scope))
 
 
-def hoist_values(scope: Scope, statements: Iterable[ast.Statement], here: Structure) -> None:
+def hoist_values(env: Env, statements: Iterable[ast.Statement]) -> None:
+    scope = env.scope
     for node in statements:
         match node:
             case ast.Let():
                 scope.values.setdefault(node.name.text, LetBinding(node.value, scope))
             case ast.Param():
-                scope.values.setdefault(node.name.text, ParamBinding(node, scope, here))
+                scope.values.setdefault(node.name.text, ParamBinding(node, scope, env.here))
 
 
-def execute(it: Interpreter, node: ast.Statement, scope: Scope, here: Structure) -> None:
+def _execute(it: Interpreter, node: ast.Statement, env: Env) -> None:
     """Carries out a statement; definitions were hoisted and do nothing here."""
     if (run := it.executors.get(type(node))) is None:
         return
     it.check_time(node)
     try:
-        run(it, node, scope, here)
+        run(it, node, env)
     except RecursionError:
         it.too_deep(node)
 

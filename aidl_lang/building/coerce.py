@@ -22,6 +22,7 @@ from aidl_lang.building.values import (
     RecordVal,
     TextVal,
     Value,
+    certain,
     kind_of,
     length,
     members,
@@ -294,10 +295,8 @@ def _str(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
 
 def _range(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
     """Returns the numbers of a range as in Python: without the end, and one number alone is the end."""
-    start, end, step = a.get("start", number(0.0)), a["end"], a.get("step")
-    assert isinstance(start, Num)
-    assert isinstance(end, Num)
-    assert step is None or isinstance(step, Num)
+    start, end = certain(a.get("start", number(0.0)), Num), certain(a["end"], Num)
+    step = certain(a["step"], Num) if "step" in a else None
     items = run(it, RangeVal(start, end, exclusive=True, step=step), node)
     return ListVal(tuple(items)) if items is not None else NOTHING
 

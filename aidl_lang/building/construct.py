@@ -14,7 +14,17 @@ from aidl_lang.building.curves import direction, distance, polar, xy
 from aidl_lang.building.expression import Expression, Place
 from aidl_lang.building.model import Constraint, Geometry, Holder, Measurement, is_size
 from aidl_lang.building.state import Arguments, Env, Interpreter, Stop
-from aidl_lang.building.values import Exactness, Nothing, Num, PointVal, TextVal, Value, length, point
+from aidl_lang.building.values import (
+    Exactness,
+    Nothing,
+    Num,
+    PointVal,
+    TextVal,
+    Value,
+    certain,
+    length,
+    point,
+)
 from aidl_lang.building.wording import all_of, compare_numbers
 from aidl_lang.checking.builtins import SIGNATURES
 from aidl_lang.checking.rules import place_before
@@ -94,9 +104,7 @@ def trace_of(it: Interpreter, name: str) -> Trace:
 
 def part(it: Interpreter, a: Mapping[str, Value], node: ast.Call, env: Env) -> Value:
     """Returns some outlines of a drawing, to be measured and copied: they are drawn with the others."""
-    whole, name = a["of"], a["part"]
-    assert isinstance(whole, Geometry)
-    assert isinstance(name, TextVal)
+    whole, name = certain(a["of"], Geometry), certain(a["part"], TextVal)
     outlines = trace_of(it, name.value)
     return replace(whole, trace=outlines, name=name.value, container=whole, views={}, attributes={})
 
@@ -147,9 +155,8 @@ def turn(it: Interpreter, value: Num, holder: Geometry, name: str, rotatable: bo
     expression = value.expression
     if not expression.is_constant or value.status >= Exactness.PARAM or (value.value != 0 and not rotatable):
         return size(it, value, holder, name, ANGLE)
-    made = it.unknown(value.value, holder, name, dimension=ANGLE)
-    assert isinstance(made.payload, ex.Unknown)
-    made.payload.locked = made.payload.exact = not rotatable and value.status is not Exactness.GUESS
+    stays = not rotatable and value.status is not Exactness.GUESS
+    made = it.unknown(value.value, holder, name, dimension=ANGLE, locked=stays)
     it.became(value, made, holder, name, ANGLE)
     return Num(made, ANGLE, Exactness.REFERENCE)
 
@@ -234,14 +241,8 @@ def _coordinate(
 
 
 def _point(it: Interpreter, g: Geometry, a: Arguments, env: Env) -> None:
-    at = a.get("at")
-    if at is None:
-        x, y = a["x"], a["y"]
-        assert isinstance(x, Num)
-        assert isinstance(y, Num)
-        at = PointVal(x, y)
-    assert isinstance(at, PointVal)
-    g.fields = {"at": loose_point(it, at, g)}
+    at = a["at"] if "at" in a else PointVal(certain(a["x"], Num), certain(a["y"], Num))
+    g.fields = {"at": loose_point(it, certain(at, PointVal), g)}
 
 
 def loose_point(it: Interpreter, at: PointVal, g: Geometry) -> PointVal:
@@ -269,18 +270,14 @@ def _points(it: Interpreter, g: Geometry, a: Arguments, names: Sequence[str]) ->
 
 
 def _written(a: Arguments, name: str) -> PointVal:
-    value = a.get(name, _ORIGIN)
-    assert isinstance(value, PointVal)
-    return value
+    return certain(a.get(name, _ORIGIN), PointVal)
 
 
 _ORIGIN = PointVal(Num(ex.ZERO, LENGTH), Num(ex.ZERO, LENGTH))
 
 
 def _size(it: Interpreter, g: Geometry, a: Arguments, name: str, dimension: MaybeDimension = LENGTH) -> Num:
-    value = a[name]
-    assert isinstance(value, Num)
-    return size(it, value, g, name, dimension)
+    return size(it, certain(a[name], Num), g, name, dimension)
 
 
 def _line(it: Interpreter, g: Geometry, a: Arguments, env: Env) -> None:
@@ -326,8 +323,7 @@ def _arc(it: Interpreter, g: Geometry, a: Arguments, env: Env) -> None:
         hidden = [distance(g.fields["center"], g.fields["end"])]
         if "radius" in a:
             hidden.append(distance(g.fields["center"], g.fields["start"]))
-        radius = g.fields["radius"]
-        assert isinstance(radius, Num)
+        radius = certain(g.fields["radius"], Num)
         hold(it, g, [(length(h), radius) for h in hidden])
 
 
@@ -388,8 +384,7 @@ def _plain(it: Interpreter, g: Geometry, a: Arguments, env: Env) -> None:
     g.fields = dict(zip(points, placed, strict=True))
     for name, kind, is_optional in numbers:
         if is_optional and kind.dimension == ANGLE:
-            angle = a.get(name, Num(ex.ZERO, ANGLE))
-            assert isinstance(angle, Num)
+            angle = certain(a.get(name, Num(ex.ZERO, ANGLE)), Num)
             g.fields[name] = turn(it, angle, g, name, rotatable=False)
         else:
             g.fields[name] = _size(it, g, a, name, kind.dimension)
@@ -416,11 +411,8 @@ def _glyphs(it: Interpreter, g: Geometry, a: Arguments, env: Env) -> None:
 
 def _traced(it: Interpreter, g: Geometry, a: Arguments, env: Env) -> None:
     """Takes the outlines from the drawing that the call stands in."""
-    part = a["part"]
-    assert isinstance(part, TextVal)
-    g.trace = trace_of(it, part.value)
-    unit = a["unit"]
-    assert isinstance(unit, Num)
+    g.trace = trace_of(it, certain(a["part"], TextVal).value)
+    unit = certain(a["unit"], Num)
     if unit.value < 0:
         message = f"the scale of this drawing is {unit.value:g}, and sizes are never negative"
         hints = ["`angle: 180deg` turns it about, and `mirror(…)` makes a mirror image of it"]

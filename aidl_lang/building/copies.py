@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import field, replace
 
 from aidl_lang.building import curves
@@ -37,7 +37,6 @@ from aidl_lang.building.state import (
     Interpreter,
     LetBinding,
     NameBinding,
-    Reach,
     Scope,
     own_names,
 )
@@ -54,6 +53,7 @@ from aidl_lang.building.values import (
     StructureCopy,
     TextVal,
     Value,
+    certain,
     kind_of,
     leaves,
     members,
@@ -214,9 +214,7 @@ class Copier:
 
     def _point(self, p: PointVal, owner: Structure) -> PointVal:
         if self.owner is not None:
-            seen = translate("", p, owner, self.owner)
-            assert isinstance(seen, PointVal)
-            p = seen
+            p = certain(translate("", p, owner, self.owner), PointVal)
         return p if self.motion is STILL else self.motion.point(p)
 
     def _number(self, name: str, value: Num, owner: Structure) -> Num:
@@ -224,9 +222,7 @@ class Copier:
             return value
         if name in DIRECTIONS:
             if self.owner is not None:
-                seen = translate(name, value, owner, self.owner)
-                assert isinstance(seen, Num)
-                value = seen
+                value = certain(translate(name, value, owner, self.owner), Num)
             return replace(value, expression=self.motion.direction(value.expression))
         return replace(value, expression=self.motion.measure(value.expression, value.dimension))
 
@@ -295,8 +291,7 @@ class Copier:
         return copy
 
     def _members(self, source: Structure, copy: Structure) -> None:
-        names = source.scope
-        assert isinstance(names, Scope)
+        names = certain(source.scope, Scope)
         copy.scope = scope = Scope(_around(names.parent, source, copy), copy, labels=names.labels)
         own_names(scope, copy)
         for name, binding in names.values.items():
@@ -404,16 +399,14 @@ def centre_of(it: Interpreter, value: Value, node: ast.Node, env: Env) -> Place:
     box = box_of(value, here)
     if box is None:
         return NOWHERE
-    middle = box.field("center")
-    assert isinstance(middle, PointVal)
-    return Place(*spelled_out(*middle.place))
+    return Place(*spelled_out(*certain(box.field("center"), PointVal).place))
 
 
 def _own_centre(it: Interpreter, g: Geometry, node: ast.Node, here: Structure) -> PointVal | None:
     found: Value | None
     if isinstance(g.scope, Scope):
         binding = g.scope.values.get("center")
-        found = read(it, binding, node, Env(g.scope, g.owner, Reach.OWN)) if binding is not None else None
+        found = read(it, binding, node, Env(g.scope, g.owner)) if binding is not None else None
         if isinstance(found, Geometry):
             return _own_centre(it, found, node, here)
         found = translate("center", found, g.owner, here) if isinstance(found, PointVal) else None
@@ -437,11 +430,10 @@ def _reflection(it: Interpreter, about: Value, node: ast.Call, env: Env) -> Moti
         case Geometry(type="point"):
             return mirrored_at_point(xy(view(about, env.here)["at"]))
         case Geometry(type="line"):
-            start, end = (view(about, env.here)[name] for name in ("start", "end"))
+            ends: Iterable[Value] = (view(about, env.here)[name] for name in ("start", "end"))
             if about.name is None and about.span is not None and about.span.overlaps(node.span):
-                start, end = as_written(start), as_written(end)  # written in the call, it is nothing to move
-            assert isinstance(start, PointVal)
-            assert isinstance(end, PointVal)
+                ends = map(as_written, ends)  # written in the call, it is nothing to move
+            start, end = (certain(each, PointVal) for each in ends)
             if start.place.written != end.place.written:
                 return mirrored_at_line(start, end)
             message, hint = "the line to mirror about has no length", "give its ends different places"
@@ -489,10 +481,7 @@ def motion_for(it: Interpreter, a: Arguments, centre: Callable[[], Place], node:
     if "by" in a:
         return translation(xy(a["by"]))
     if "dx" in a or "dy" in a:
-        dx, dy = (a.get(name, _NONE) for name in ("dx", "dy"))
-        assert isinstance(dx, Num)
-        assert isinstance(dy, Num)
-        return translation(Place(dx.expression, dy.expression))
+        return translation(Place(*(certain(a.get(name, _NONE), Num).expression for name in ("dx", "dy"))))
     about = xy(a["about"]) if "about" in a else centre()
     return _motion(it, a.get("angle"), a.get("factor"), about, about, node)
 

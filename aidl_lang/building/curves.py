@@ -21,7 +21,7 @@ from aidl_lang.building.model import (
     convert_point,
     own_geometry,
 )
-from aidl_lang.building.values import Exactness, ListVal, Num, PointVal, length, numbers_of, point
+from aidl_lang.building.values import Exactness, ListVal, Num, PointVal, certain, length, numbers_of, point
 from aidl_lang.checking.types import Signature, fields_of
 from aidl_lang.checking.units import ANGLE, MaybeDimension
 from aidl_lang.common.records import record
@@ -76,13 +76,11 @@ def clockwise(geometry: Geometry, here: Structure) -> bool:
 
 
 def xy(value: Value) -> Place:
-    assert isinstance(value, PointVal)
-    return value.place
+    return certain(value, PointVal).place
 
 
 def number(value: Value) -> Expression:
-    assert isinstance(value, Num)
-    return value.expression
+    return certain(value, Num).expression
 
 
 def direction(a: Value, b: Value) -> Expression:
@@ -204,8 +202,7 @@ def _reach_of(of: Iterable[Piece], side: str) -> list[Expression]:
 
 
 def _point(name: str, g: Geometry, here: Structure) -> Value | None:
-    at = view(g, here)["at"]
-    assert isinstance(at, PointVal)
+    at = certain(view(g, here)["at"], PointVal)
     fields: dict[str, Value] = {"x": at.x, "y": at.y, "center": at}
     return fields.get(name)
 

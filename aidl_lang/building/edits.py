@@ -12,11 +12,11 @@ from aidl_lang.building.calls import bound, hoist_values
 from aidl_lang.building.coerce import as_written, whole
 from aidl_lang.building.copies import Copier, centre_of, motion_for
 from aidl_lang.building.curves import DIRECTIONS, STILL, Motion, after, turned, xy
-from aidl_lang.building.evaluate import evaluate, iterate, truth, turn_scope
+from aidl_lang.building.evaluate import evaluate, truth, turns
 from aidl_lang.building.expression import Place
 from aidl_lang.building.model import Geometry, Structure
 from aidl_lang.building.overloads import arranged
-from aidl_lang.building.state import Env, Interpreter, Reach, Scope
+from aidl_lang.building.state import Env, Interpreter, Scope
 from aidl_lang.building.values import (
     NOTHING,
     Array,
@@ -88,10 +88,10 @@ def edits_on(it: Interpreter, name: str, indices: tuple[int, ...], scope: Scope)
     """Returns the edits of a thing being made, in text order: those below it in the bodies around it."""
     found: list[EditCall] = []
     for ahead in reversed(it.ahead):
-        if ahead.scope.declaring() is not scope.declaring():
+        if ahead.env.scope.declaring() is not scope.declaring():
             break
         if name in _edited_names(it, ahead.statements):
-            found += _among(it, ahead.statements[ahead.next :], ahead.scope, (name, indices))
+            found += _among(it, ahead.statements[ahead.next :], ahead.env, (name, indices))
     return found
 
 
@@ -113,28 +113,25 @@ def _edited_names(it: Interpreter, statements: Sequence[ast.Statement]) -> froze
 
 
 def _among(
-    it: Interpreter, statements: Sequence[ast.Statement], scope: Scope, wanted: tuple[str, tuple[int, ...]]
+    it: Interpreter, statements: Sequence[ast.Statement], env: Env, wanted: tuple[str, tuple[int, ...]]
 ) -> Iterator[EditCall]:
     if wanted[0] not in _edited_names(it, statements):
         return
-    env = Env(scope, it.ahead[-1].here, Reach.OWN)
     for statement in statements:
         match statement:
             case ast.ExpressionStatement(ast.Call() as call) if _is_on(it, call, env, wanted):
-                it.edited.add((call, scope.labels))
-                yield EditCall(call, scope, wanted[1])
-            case ast.For(variables, iterable, body) if wanted[0] in _edited_names(it, body.statements):
-                for item in _tried(it, partial(iterate, it, iterable, env)) or ():
-                    it.count_turn(statement)
-                    turn = turn_scope(it, scope, variables, item, statement)
-                    hoist_values(turn, body.statements, env.here)
+                it.edited.add((call, env.scope.labels))
+                yield EditCall(call, env.scope, wanted[1])
+            case ast.For(body=body) if wanted[0] in _edited_names(it, body.statements):
+                for turn in _tried(it, partial(turns, it, statement, env)) or ():
+                    hoist_values(turn, body.statements)
                     yield from _among(it, body.statements, turn, wanted)
             case ast.If(test, then, otherwise):
                 chosen = _tried(it, partial(_chosen, it, test, env))
                 taken = then if chosen else otherwise if chosen is not None else None
                 if taken is not None:
-                    hoist_values(scope, taken.statements, env.here)
-                    yield from _among(it, taken.statements, scope, wanted)
+                    hoist_values(env, taken.statements)
+                    yield from _among(it, taken.statements, env, wanted)
 
 
 def _chosen(it: Interpreter, test: ast.Expression, env: Env) -> bool:
@@ -181,7 +178,7 @@ def motion_of(
 
 
 def _step(it: Interpreter, edit: EditCall, thing: Value, centre: Place, here: Structure) -> Motion | None:
-    node, env = edit.call, Env(_seeing(it, edit, thing), here, Reach.OWN)
+    node, env = edit.call, Env(_seeing(it, edit, thing), here)
     nodes = [node.receiver] if node.receiver is not None else []
     nodes += [a.value for a in node.arguments]
     target = _target(node)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import operator
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from functools import partial
 
 from aidl_lang.building import expression as ex
@@ -105,15 +105,8 @@ def _for_arguments(it: Interpreter, node: ast.ForArguments, env: Env) -> Value:
 def _of_turns(
     it: Interpreter, node: ast.Comprehension | ast.ForArguments, env: Env, made: Callable[[Env], list[Value]]
 ) -> Value:
-    turns = iterate(it, node.iterable, env)
-    if turns is None:
-        return NOTHING
-    found: list[Value] = []
-    for item in turns:
-        it.count_turn(node)
-        scope = turn_scope(it, env.scope, node.variables, item, node)
-        found += made(Env(scope, env.here, env.reach))
-    return _listed(found)
+    run = turns(it, node, env)
+    return NOTHING if run is None else _listed([value for inner in run for value in made(inner)])
 
 
 def _if_arguments(it: Interpreter, node: ast.IfArguments, env: Env) -> Value:
@@ -127,7 +120,7 @@ def _if_arguments(it: Interpreter, node: ast.IfArguments, env: Env) -> Value:
 def _arguments_of(it: Interpreter, block: ast.ArgumentBlock, env: Env) -> list[Value]:
     """Returns the arguments in a block; of a list among them its members, as of one among the others."""
     scope = Scope(env.scope, env.scope.container, turn=True, labels=env.scope.labels)
-    inner = Env(scope, env.here, env.reach)
+    inner = env.within(scope)
     found: list[Value] = []
     for item in block.items:
         if isinstance(item, ast.Let):
@@ -145,6 +138,21 @@ def iterate(it: Interpreter, node: ast.Expression, env: Env) -> list[Value] | No
     if items is None and not isinstance(value, RangeVal | Nothing):
         it.misfit(rules.no_run(type_of(value)), node)
     return list(items) if items is not None else None
+
+
+def turns(
+    it: Interpreter, node: ast.For | ast.Comprehension | ast.ForArguments, env: Env
+) -> Iterator[Env] | None:
+    """Returns the environments of the turns of a loop; None after an error."""
+    items = iterate(it, node.iterable, env)
+    return None if items is None else (_turn(it, node, item, env) for item in items)
+
+
+def _turn(
+    it: Interpreter, node: ast.For | ast.Comprehension | ast.ForArguments, item: Value, env: Env
+) -> Env:
+    it.count_turn(node)
+    return env.within(turn_scope(it, env.scope, node.variables, item, node))
 
 
 def turn_scope(

@@ -12,6 +12,7 @@ from aidl_lang.building import expression as ex
 from aidl_lang.building.boxes import spelled_out
 from aidl_lang.building.coerce import as_point, as_text, as_written, constant, look, numeric
 from aidl_lang.building.construct import part as traced_part
+from aidl_lang.building.curves import xy
 from aidl_lang.building.expression import DEGREE, Expression
 from aidl_lang.building.model import Assertion, Condition, Geometry, Measurement, Structure
 from aidl_lang.building.outlines import OPERATIONS
@@ -27,6 +28,7 @@ from aidl_lang.building.values import (
     RecordVal,
     TextVal,
     Value,
+    certain,
     kind_of,
     members,
     number,
@@ -70,16 +72,12 @@ def _convex_corners(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> 
     if given_one_by_one or any(edge.type != "line" for edge in edges):
         return _NONE
     starts, ends = ([look(it, edge, node, env)[name] for edge in edges] for name in ("start", "end"))
-    at = [_at(p) for p in starts]
+    at = [xy(p).written for p in starts]
     closed = all(
-        math.dist(_at(p), q) < 1e-9 * math.dist(at[0], q) + 1e-9 for p, q in zip(ends, _next(at), strict=True)
+        math.dist(xy(p).written, q) < 1e-9 * math.dist(at[0], q) + 1e-9
+        for p, q in zip(ends, _next(at), strict=True)
     )
     return ListVal(tuple(starts)) if closed and _is_convex(at) else _NONE
-
-
-def _at(point: Value) -> tuple[float, float]:
-    assert isinstance(point, PointVal)
-    return point.x.value, point.y.value
 
 
 def _is_convex(corners: Sequence[tuple[float, float]]) -> bool:
@@ -98,9 +96,7 @@ def _next(items: Sequence[tuple[float, float]]) -> Sequence[tuple[float, float]]
 
 def _refuse(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
     """Reports that a definition of the library makes no sense of its arguments."""
-    why = a["why"]
-    assert isinstance(why, TextVal)
-    it.refuse(node, why.value)
+    it.refuse(node, certain(a["why"], TextVal).value)
     return NOTHING
 
 
@@ -290,9 +286,8 @@ def _len(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
 
 
 def _choice(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
-    word = a["word"]
+    word = certain(a["word"], TextVal)
     words = dict.fromkeys(w.value for w in members(a["words"]) or () if isinstance(w, TextVal))
-    assert isinstance(word, TextVal)
     meant = find(word.value, words) or find(_SAME_WORD.get(word.value, ""), words)
     if meant is None:
         hints = did_you_mean(f'"{like}"' for like in nearest(word.value, words))
@@ -396,8 +391,7 @@ def _centroid(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
         foreseen = formula(area)
         assert foreseen is not None
         size = Num(ex.apply("abs", foreseen), AREA)  # it may turn over
-        drawn = compare_numbers(it, "==", size, Num(ex.measure(area), AREA), node)
-        assert isinstance(drawn, Condition)
+        drawn = certain(compare_numbers(it, "==", size, Num(ex.measure(area), AREA), node), Condition)
         it.assertions.append(Assertion(env.here, drawn, OTHERWISE, node.span.one_line, where))
     return point(*found)
 

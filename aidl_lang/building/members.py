@@ -41,6 +41,7 @@ from aidl_lang.building.values import (
     RecordVal,
     TextVal,
     Value,
+    certain,
     kind_of,
     members,
     number,
@@ -134,11 +135,8 @@ def _refers(value: Value) -> bool:
 def _own_point(it: Interpreter, binding: PassedBinding, point: PointVal, here: Structure) -> PointVal:
     """Makes a point of the instance where, in its frame, the argument is at the first guesses."""
     if _refers(point):
-        numbers = as_written(point)
-        assert isinstance(numbers, PointVal)
-        at = as_written(convert_point(numbers, binding.holder, here))
-        assert isinstance(at, PointVal)
-        point = at
+        written = certain(as_written(point), PointVal)
+        point = certain(as_written(convert_point(written, binding.holder, here)), PointVal)
     return positions(it, [point], here, [binding.name])[0]
 
 
@@ -193,8 +191,7 @@ def _read_var(it: Interpreter, var: VarBinding, node: ast.Node, env: Env) -> Val
 
 def _read_copied(it: Interpreter, copied: CopiedBinding, node: ast.Node, env: Env) -> Value:
     source = copied.source
-    assert isinstance(source.scope, Scope)
-    value = read(it, copied.binding, node, Env(source.scope, source.owner, Reach.OWN))
+    value = read(it, copied.binding, node, Env(certain(source.scope, Scope), source.owner))
     return copied.carry(copied.name, value, source.owner)
 
 
@@ -302,9 +299,9 @@ def member_names(value: Value) -> list[str]:
 
 
 def _structure_member(it: Interpreter, s: Structure, name: str, node: ast.Node, env: Env) -> Value | None:
-    assert isinstance(s.scope, Scope)
-    if (key := find(name, s.scope.values)) is not None:
-        binding = s.scope.values[key]
+    names = certain(s.scope, Scope).values
+    if (key := find(name, names)) is not None:
+        binding = names[key]
         value = read(it, binding, node, env)
         # Points kept as they are (`origin`, an argument, a list) are in the structure's own frame.
         is_own = isinstance(binding, PointVal | ListVal | PassedBinding)
@@ -341,8 +338,8 @@ def _geometry_member(it: Interpreter, g: Geometry, name: str, node: ast.Node, en
 
 def _shape_member(it: Interpreter, g: Geometry, key: str, node: ast.Node, env: Env) -> Value:
     """Returns a part, argument or let of a compound shape: read in its owner's frame, seen from here."""
-    assert isinstance(g.scope, Scope)
-    value = read(it, g.scope.values[key], node, Env(g.scope, g.owner, Reach.OWN))
+    scope = certain(g.scope, Scope)
+    value = read(it, scope.values[key], node, Env(scope, g.owner))
     value = curves.translate(key, value, g.owner, env.here)
     if isinstance(value, Num | PointVal | ListVal) and not is_same_everywhere(value):
         if not may_read(it, g.bound_to, node, env):
@@ -364,7 +361,7 @@ def _box_field(it: Interpreter, box: Box, name: str, node: ast.Node, env: Env) -
         return None
     if env.reach is Reach.ABOVE:
         if any(isinstance(s, Structure) and env.here.is_within(s) for s in box.sources):
-            env = Env(env.scope, env.here, Reach.OWN)  # it follows from what is made here
+            env = Env(env.scope, env.here)  # it follows from what is made here
         else:
             # over the unknowns of what is in it by now
             value = with_numbers(value, lambda n: replace(n, expression=boxes.spelled_out(n.expression)[0]))
@@ -425,7 +422,7 @@ def read_param(it: Interpreter, binding: ParamBinding, node: ast.Node) -> Value:
 
 def _evaluate(it: Interpreter, binding: ParamBinding) -> Value:
     node = binding.node
-    env = Env(binding.scope, binding.structure, Reach.OWN)
+    env = Env(binding.scope, binding.structure)
     written = it.evaluate(node.value, env)
     if isinstance(written, Num):
         known = constant(it, written, node.value, "the value of a `param`")

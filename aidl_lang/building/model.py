@@ -22,7 +22,9 @@ from aidl_lang.common.source import Span
 from aidl_lang.syntax import ast
 
 if TYPE_CHECKING:
+    from aidl_lang.building.state import Scope
     from aidl_lang.building.values import Value
+    from aidl_lang.building.wording import Wording
     from aidl_lang.common.drawings import Trace
     from aidl_lang.common.font_files import Curve
     from aidl_lang.common.lettering import Glyph
@@ -101,7 +103,7 @@ class Geometry:
     span: Span | None
     fields: dict[str, Value] = field(default_factory=dict)
     parts: dict[str, Value] = field(default_factory=dict)
-    scope: object = None
+    scope: Scope | None = None
     arguments: tuple[str, ...] = ()
     clockwise: bool = False
     glyphs: tuple[Glyph, ...] = ()
@@ -256,7 +258,7 @@ class Structure:
     members: dict[str, Value] = field(default_factory=dict)
     geometry: dict[str, Value] = field(default_factory=dict)
     children: list[Structure] = field(default_factory=list)
-    scope: object = None
+    scope: Scope | None = None
     plan: tuple[Expression, Expression, Expression, Expression] | None = None
     source: Structure | None = None
     extents: dict[object, Expression] = field(default_factory=dict, repr=False)
@@ -450,10 +452,16 @@ class Constraint:
     weight: float | None = None
     label: str = ""
     """loop variables at the place, as `i = 3`"""
-    wording: object = field(default=None, repr=False)
+    wording: Wording | None = field(default=None, repr=False)
     """the statement, to be read in other words (see building.wording); None for what was not stated"""
     is_inherent: bool = False
     """a demand of a shape on itself: nobody stated it for the structure that the shape is in"""
+
+    @property
+    def node(self) -> ast.Expression | None:
+        """The statement, if it is all that is written at its place; else None."""
+        wording = self.wording
+        return wording.node if wording is not None and wording.node.span == self.span else None
 
     @cached_property
     def mentions(self) -> tuple[str, ...]:
@@ -472,7 +480,7 @@ class Assertion:
     label: str = ""
     shape: str = ""
     """the shape that demands this of its arguments"""
-    wording: object = field(default=None, repr=False)
+    wording: Wording | None = field(default=None, repr=False)
     """the condition, to be read again in parts (see building.wording)"""
     outline: Geometry | None = None
     """the outline whose box a constraint foresaw to be as this asks"""
@@ -480,6 +488,11 @@ class Assertion:
     """the members of a pattern are where they are on a curve that was solved to another form"""
     extent: float = 0.0
     """the length of a text along a curve, in heights of a capital, which the curve is to have room for"""
+
+
+def told(stated: Constraint | Assertion) -> str:
+    """Returns what was stated for a sentence, and in which turn of a loop."""
+    return f"`{stated.text}` [{stated.label}]" if stated.label else f"`{stated.text}`"
 
 
 @record(eq=False)

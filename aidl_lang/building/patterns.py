@@ -28,6 +28,7 @@ from aidl_lang.building.values import (
     StructureCopy,
     TextVal,
     Value,
+    certain,
     kind_of,
     length,
     number,
@@ -92,8 +93,7 @@ class _Call:
 
     def size(self, name: str) -> Expression:
         """Returns a number that belongs to the pattern: kept if literal."""
-        value = self.a[name]
-        assert isinstance(value, Num)
+        value = certain(self.a[name], Num)
         dimension = value.dimension or LENGTH
         made = size(self.it, value, self.settings, name, dimension)
         self.settings.fields[name] = made
@@ -101,8 +101,7 @@ class _Call:
 
     def position(self, name: str) -> Place:
         """Returns a position of the pattern: a first guess if literal, the origin if missing."""
-        value = self.a.get(name, _ORIGIN)
-        assert isinstance(value, PointVal)
+        value = certain(self.a.get(name, _ORIGIN), PointVal)
         (made,) = positions(self.it, [value], self.settings, [name])
         self.settings.fields[name] = made
         return xy(made)
@@ -260,8 +259,7 @@ def _polar_array(call: _Call) -> Value:
 
 def _step(call: _Call, n: int) -> Expression:
     """Returns the angle between members: a full turn has no last one on its first, a part of one has ends."""
-    sweep = call.a.get("sweep", number(360.0, ANGLE))
-    assert isinstance(sweep, Num)
+    sweep = certain(call.a.get("sweep", number(360.0, ANGLE)), Num)
     is_full = abs(abs(sweep.value) - 360.0) < 1e-9
     if is_full and sweep.expression.is_constant:
         return ex.constant(sweep.value / max(n, 1))
@@ -383,18 +381,16 @@ def _point_at(call: _Call) -> Value:
     """Returns the point of curves at a length from their start, or the first or last that has an x or a y."""
     from aidl_lang.building.along import crossings
 
-    at, axis = call.a["at"], call.a.get("axis")
-    assert isinstance(at, Num)
+    at, axis = certain(call.a["at"], Num), call.a.get("axis")
     if axis is None:
         if (way := _way(call)) is None:
             return NOTHING
         place, _, off = way.followed(at.expression)
     else:
-        assert isinstance(axis, TextVal)
-        curves = _curves(call)
-        found = crossings(curves or (), call.env.here, int(axis.value == "y"), at.expression)
+        curves, word = _curves(call), certain(axis, TextVal).value
+        found = crossings(curves or (), call.env.here, int(word == "y"), at.expression)
         if not found:
-            what = f"no point of this outline has {axis.value} = {at.value:g}"
+            what = f"no point of this outline has {word} = {at.value:g}"
             return call.wrong(what, "name an outline that reaches there") if curves is not None else NOTHING
         place, off = found[-1 if call.a["last"] is True else 0]
     call.check_followed(off)
@@ -473,12 +469,9 @@ def lettered(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
         hint = "name an edge of an outline, as in `along: plate.top`, or draw a guide near it: "
         report_once(it, "E0358", message, it.call_sites[-1], [hint + "`construction way = arc(…)`"])
         return NOTHING
-    glyphs, align = typeset(it, a), a["align"]
-    if not glyphs:
+    if not (glyphs := typeset(it, a)):
         return NOTHING
-    assert isinstance(align, TextVal)
-    assert isinstance(a["height"], Num)
-    share = 0.5 if way.is_closed else ALIGNMENTS[align.value]
+    share = 0.5 if way.is_closed else ALIGNMENTS[certain(a["align"], TextVal).value]
     first, found = way.length * share, list[Geometry]()
     height: Expression | None = None
     reach, bridges = reach_of([g.bound_to for g in given], env.here), bridge(it, a)
@@ -487,7 +480,7 @@ def lettered(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
         g = Geometry("glyphs", env.here, it.place(node), glyphs=(glyph,), reach=reach)
         g.filled = is_filled(a, glyphs)
         if height is None:
-            height = size(it, a["height"], g, "height").expression
+            height = size(it, certain(a["height"], Num), g, "height").expression
         middle = height * ((glyph.box[0] + glyph.box[2]) / 2)
         at, heading = way.at(first + middle)
         start = point(*(at - middle * ex.towards(heading)))

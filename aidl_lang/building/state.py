@@ -214,7 +214,18 @@ class Env:
 
     scope: Scope
     here: Structure
-    reach: Reach
+    reach: Reach = Reach.OWN
+
+    @property
+    def holder(self) -> Holder:
+        """The structure or shape whose members are declared here."""
+        return self.scope.declaring().container or self.here
+
+    def within(self, scope: Scope) -> Env:
+        return Env(scope, self.here, self.reach)
+
+    def reaching(self, reach: Reach) -> Env:
+        return Env(self.scope, self.here, reach)
 
 
 @record()
@@ -237,7 +248,7 @@ class Stop(Exception):  # noqa: N818 (not an error of ours: the program went ove
 
 
 Executor = Callable[..., None]
-"""A function that carries out a statement: (interpreter, statement, scope, structure)."""
+"""A function that carries out a statement: (interpreter, statement, environment)."""
 
 
 @record(frozen=False)
@@ -245,8 +256,7 @@ class Ahead:
     """A body that is being run; `next` is the statement after the one that is run now."""
 
     statements: Sequence[ast.Statement]
-    scope: Scope
-    here: Structure
+    env: Env
     next: int = 0
 
 
@@ -276,7 +286,7 @@ class Interpreter:
     whole_boxes: bool = False
     """no box leaves out those of descendants that it is compared with"""
     literals: list[Literal] = field(default_factory=list)
-    pending: dict[Structure, list[tuple[ast.Statement, Scope]]] = field(default_factory=dict)
+    pending: dict[Structure, list[tuple[ast.Statement, Env]]] = field(default_factory=dict)
     orders: dict[Structure, list[StatedOrder]] = field(default_factory=dict)
     """what is said of the order of structures beside others"""
     clips: dict[Structure, StatedClip] = field(default_factory=dict)
@@ -456,6 +466,8 @@ class Interpreter:
         kept: bool = False,
         frame_of: Structure | None = None,
         cell: bool = False,
+        locked: bool = False,
+        outline: bool = False,
         since: str = "",
     ) -> ex.Expression:
         """Makes an unknown, which the structure of its holder owns if no other does. Returns it as an
@@ -464,8 +476,8 @@ class Interpreter:
         owner = owner or (holder.owner if isinstance(holder, Geometry) else holder)
         if not abs(guess) <= _LARGEST_GUESS:
             guess = self._tamed(guess, holder, name)
-        angular, implied = dimension == ANGLE, since != ""
-        new = Unknown(guess, owner, holder, name, kept, angular, frame_of, cell, since=since, implied=implied)
+        new = Unknown(guess, owner, holder, name, kept, dimension == ANGLE, frame_of, cell, exact=locked)
+        new.locked, new.outline, new.since, new.implied = locked, outline, since, since != ""
         self.unknowns.append(new)
         return ex.unknown(new)
 

@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from aidl_lang.building.boxes import Box
     from aidl_lang.building.curves import Motion
     from aidl_lang.building.model import Condition, Geometry, Structure
+    from aidl_lang.building.state import Scope
 
 T = TypeVar("T")
 
@@ -155,7 +156,7 @@ class Instantiation:
     value_type = StructureType()
 
     signature: Signature
-    scope: object
+    scope: Scope | None
     definition: ast.Structure
     arguments: Mapping[str, Value]
     node: ast.Call
@@ -258,6 +259,12 @@ def length(expression: Expression, status: Exactness = Exactness.REFERENCE) -> N
 
 def point(x: Expression, y: Expression, status: Exactness = Exactness.REFERENCE) -> PointVal:
     return PointVal(Num(x, LENGTH, status), Num(y, LENGTH, status))
+
+
+def certain(value: object, kind: type[T]) -> T:
+    """Returns a value of which it is known, as from the choice of an overload, that it is of a kind."""
+    assert isinstance(value, kind)
+    return value
 
 
 def numbers_of(value: Value) -> tuple[Num, ...]:

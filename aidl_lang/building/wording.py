@@ -22,6 +22,7 @@ from aidl_lang.building.values import (
     PointVal,
     TextVal,
     Value,
+    certain,
     leaves,
     members,
     numbers_of,
@@ -164,8 +165,7 @@ def conjunction(it: Interpreter, operator: str, left: Value, right: Value, node:
         return left
     if isinstance(left, bool) or isinstance(right, bool):
         return not neutral
-    assert isinstance(left, Condition)
-    assert isinstance(right, Condition)
+    left, right = certain(left, Condition), certain(right, Condition)
     if left.operator == right.operator == operator:
         return Condition(operator, left.parts + right.parts)
     return Condition(operator, (left, right))

@@ -107,18 +107,10 @@ class _StatedMember:
         text = self.stated.text
         return f"`{text if len(text) <= _QUOTED else text[: _QUOTED - 1] + '…'}`"
 
-    @property
-    def node(self) -> ast.Expression | None:
-        """The statement, if it is all that is written at its place; else None."""
-        wording = self.stated.wording
-        if isinstance(wording, Wording) and wording.node.span == self.stated.span:
-            return wording.node
-        return None
-
     def value(self, part: ast.Expression) -> Expression | None:
         """Returns the number expression of a part of the statement; None if it is not a number."""
         wording = self.stated.wording
-        value = wording.value(part) if isinstance(wording, Wording) else None
+        value = wording.value(part) if wording is not None else None
         return value.expression if isinstance(value, Num) else None
 
 
@@ -219,15 +211,20 @@ class Explanation:
             for dial in stated[span]:
                 yield RemedySearch(dial, self.failure, self.trials, span, member)
         if not self.sizes:
-            wordings = [party.stated.wording for party in self.parties]
-            uses = next((w.it.program.resolution.uses for w in wordings if isinstance(w, Wording)), {})
-            for dial in exact_numbers([p.node for p in self.parties if p.node is not None], uses):
+            uses = next((w.it.program.resolution.uses for w in self._wordings), {})
+            for dial in exact_numbers(
+                [p.stated.node for p in self.parties if p.stated.node is not None], uses
+            ):
                 yield RemedySearch(dial, self.failure, self.trials, dial.place)
+
+    @property
+    def _wordings(self) -> Iterator[Wording]:
+        return (w for party in self.parties if (w := party.stated.wording) is not None)
 
     @staticmethod
     def _dials(party: _StatedMember) -> list[Dial]:
         """Returns the numbers of a statement that may be changed: factors are no measures."""
-        dials = [] if party.node is None else written_numbers(party.node)
+        dials = [] if party.stated.node is None else written_numbers(party.stated.node)
         return [dial for dial in dials if not dial.is_factor]
 
     def _remedy_of(self, party: _StatedMember) -> Remedy | None:
@@ -263,7 +260,7 @@ class Explanation:
 
     def _last_resorts(self) -> Iterator[Fix]:
         """Yields fixes that change no number: a shape with several points placed turns, a party is a wish."""
-        equal = [p.stated.comparisons for p in self.parties if isinstance(p.node, ast.Comparison)]
+        equal = [p.stated.comparisons for p in self.parties if isinstance(p.stated.node, ast.Comparison)]
         points = [parts for parts in equal if len(parts) == 2]
         spoken = unknowns(side for parts in points[1:] for part in parts for side in (part.left, part.right))
         shapes = {unknown.holder.span: unknown.holder.path for unknown in spoken}
@@ -272,7 +269,7 @@ class Explanation:
                 where = replace(span, start=span.end - 1, end=span.end - 1)
                 yield Fix(f"let `{path}` turn", (Edit(where, ", rotatable: true"),))
         for party in reversed(self.parties):
-            if party.node is not None and self.times[party.stated.span] == 1:
+            if party.stated.node is not None and self.times[party.stated.span] == 1:
                 yield wished(party.stated)
 
     def _may_finish(self, found: Remedy) -> bool:
@@ -286,7 +283,7 @@ class Explanation:
         """Returns the fix; one that leaves the statement out if, changed, it would repeat another party."""
         for party in self.parties:
             span = party.stated.span
-            if party.node is None or not span.overlaps(found.dial.place):
+            if party.stated.node is None or not span.overlaps(found.dial.place):
                 continue
             behind_it = len(span.source.text) - span.end
             text = self.trials.edited(found.fix.edits).text
@@ -373,9 +370,9 @@ class Explanation:
         found = self._remedy_of(party)
         if found is None:
             return ""
-        assert party.node is not None
+        assert party.stated.node is not None
         times = self.times[party.stated.span]
-        told = found.would_fit(len(written_numbers(party.node)))
+        told = found.would_fit(len(written_numbers(party.stated.node)))
         return f"{told}, all {times} times" if times > 1 else told
 
     def _labels(self, chief: _StatedMember) -> Iterator[Label]:
@@ -416,8 +413,7 @@ class Explanation:
         yield from next(filter(None, apart), ())
         match self.failure.reason:
             case Failure.OVERDETERMINED:
-                wordings = [w for party in self.parties if isinstance(w := party.stated.wording, Wording)]
-                held = dict.fromkeys(f"`{name}`" for wording in wordings for name in wording.held())
+                held = dict.fromkeys(f"`{name}`" for each in self._wordings for name in each.held())
                 if held:
                     unknowns = self.lowered.unknowns
                     moving = listed([unknowns[i].description for i in self.failure.moving], NAMED)
@@ -430,7 +426,7 @@ class Explanation:
 
 def _apart(party: _StatedMember, gap: float) -> tuple[str, ...]:
     """Returns hints on the difference of the sides of `a == b` where the other parties hold; else none."""
-    node, stated = party.node, party.stated
+    node, stated = party.stated.node, party.stated
     if not isinstance(node, ast.Comparison) or node.operators != ("==",) or len(stated.comparisons) != 1:
         return ()
     (comparison,) = stated.comparisons

@@ -10,8 +10,7 @@ import numpy as np
 
 from aidl_lang.building.expression import Unknown
 from aidl_lang.building.lower import Lowered
-from aidl_lang.building.model import Constraint, Structure
-from aidl_lang.building.wording import Wording
+from aidl_lang.building.model import Constraint, Structure, told
 from aidl_lang.common.diagnostics import Diagnostic, Fix, Label
 from aidl_lang.common.prose import listed, short
 from aidl_lang.common.records import record
@@ -49,14 +48,14 @@ class GaveWay:
 
 def gave_way(lowered: Lowered, solution: Solution, settings: Settings) -> tuple[GaveWay, ...]:
     """Returns what gave way in a solution, by reason."""
-    found, told = list[GaveWay](), set[int]()
+    found, seen = list[GaveWay](), set[int]()
     for stage in reversed(solution.stages):
         if (concession := stage.concession) is None:
             continue
         together: dict[tuple[Constraint, ...], GaveWay] = {}
         for reason in reasons(lowered.problem, settings, concession, solution.values):
-            one = _given(lowered, solution, reason, told)
-            told |= reason.unknowns
+            one = _given(lowered, solution, reason, seen)
+            seen |= reason.unknowns
             if one.moved:
                 # A constraint inherent in a shape is reported with the author's constraints on that shape.
                 said = tuple(c for c in one.because if not c.is_inherent)
@@ -67,11 +66,11 @@ def gave_way(lowered: Lowered, solution: Solution, settings: Settings) -> tuple[
     return tuple(reversed(found))
 
 
-def _given(lowered: Lowered, solution: Solution, reason: Reason, told: Container[int]) -> GaveWay:
+def _given(lowered: Lowered, solution: Solution, reason: Reason, seen: Container[int]) -> GaveWay:
     moved = {}
     for index in sorted(reason.unknowns):
         before, now = float(lowered.problem.initial[index]), float(solution.values[index])
-        if index not in told and abs(now - before) > _STILL:
+        if index not in seen and abs(now - before) > _STILL:
             moved[lowered.unknowns[index]] = before, now
     stated = [c for i in reason.constraints if (c := lowered.stated[i]) is not None]
     stated.sort(key=lambda c: c.span.start)
@@ -205,7 +204,7 @@ def _is_named(structure: Structure, given: GaveWay) -> bool:
 def _whose(given: GaveWay) -> tuple[str, ...]:
     if not given.because:
         return ()
-    names = [f"`{c.text}`" + (f" [{c.label}]" if c.label else "") for c in given.because]
+    names = [told(c) for c in given.because]
     ask = f"{listed(names, 6)} ask{'s' * (len(names) == 1)} for it"
     single = len(names) > 1 and given.minimal
     return (f"{ask}: without any one of them it would have stayed" if single else ask,)
@@ -261,24 +260,18 @@ def _note(lowered: Lowered, found: Redundancy, can_go: bool) -> Diagnostic:
     stated = lowered.stated[found.constraint]
     assert stated is not None
     others = [other for i in found.follows_from if (other := lowered.stated[i]) is not None]
-    names = list(dict.fromkeys(_name(other) for other in others))
+    names = list(dict.fromkeys(told(other) for other in others))
     reason = listed(names, _NAMED) or "the other constraints"
     labels = dict.fromkeys(Label(other.span, "from this") for other in others if other.span != stated.span)
-    name, left = _name(stated), left_out(stated) if can_go else None
+    name, left = told(stated), left_out(stated) if can_go else None
     fix = Fix(f"leave out {name}", left.edits) if left else None
     message = f"{name} follows from {reason}"
     return Diagnostic("N0602", message, stated.span, "says nothing new", tuple(labels), fix=fix)
 
 
-def _name(stated: Constraint) -> str:
-    return f"`{stated.text}` [{stated.label}]" if stated.label else f"`{stated.text}`"
-
-
 def _is_single(stated: Constraint | None, times: Counter[Span]) -> bool:
     """Tells whether its place states this constraint and no other: no loop, no template."""
-    if stated is None or not isinstance(stated.wording, Wording):
-        return False
-    return stated.wording.node.span == stated.span and not stated.label and times[stated.span] == 1
+    return stated is not None and stated.node is not None and not stated.label and times[stated.span] == 1
 
 
 def _changes_nothing(lowered: Lowered, solution: Solution, left_out: Sequence[int]) -> bool:

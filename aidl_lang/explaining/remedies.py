@@ -13,7 +13,6 @@ import numpy as np
 
 from aidl_lang.building.lower import Lowered
 from aidl_lang.building.model import Constraint
-from aidl_lang.building.wording import Wording
 from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix, Label
 from aidl_lang.common.prose import short
 from aidl_lang.common.records import record
@@ -496,8 +495,7 @@ def _answered(
     """Returns a finding with numbers that fit where its values are given, and the least change of these as
     the fix. If there are none, names a number that fits in a constraint; an `assert` is not up for change.
     """
-    wording = stated.wording
-    if not isinstance(wording, Wording) or wording.node.span != stated.span:
+    if (wording := stated.wording) is None or (node := stated.node) is None:
         return d
 
     def fitting(dials: Sequence[Dial]) -> Iterator[Remedy]:
@@ -505,14 +503,14 @@ def _answered(
         return (each for each in remedies(searches) if mends(d, each.fix, everything, trials))
 
     uses = wording.it.program.resolution.uses
-    given = sorted(fitting(exact_numbers([wording.node], uses)), key=lambda each: (each.counts, each.share))
+    given = sorted(fitting(exact_numbers([node], uses)), key=lambda each: (each.counts, each.share))
     if given:
         labels = d.secondary
         for each in given:
             labels = _with(labels, each)
         fix = given[0].fix if given[0].share <= _MOST else None
         return replace(d, secondary=labels[:_PLACES], fix=fix)
-    dials = written_numbers(wording.node) if d.code == NEVER else []
+    dials = written_numbers(node) if d.code == NEVER else []
     if (own := next(fitting(dials), None)) is None:
         return d
     return replace(d, label="; ".join(filter(None, (d.label, own.would_fit(len(dials))))))

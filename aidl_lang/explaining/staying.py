@@ -10,7 +10,6 @@ from aidl_lang.building.boxes import box_of, source_unknowns
 from aidl_lang.building.expression import Evaluator, Expression, Unknown
 from aidl_lang.building.lower import Lowered
 from aidl_lang.building.model import Constraint, Geometry, Structure
-from aidl_lang.building.wording import Wording
 from aidl_lang.common.diagnostics import Diagnostic, Label
 from aidl_lang.common.prose import named, short
 from aidl_lang.common.records import record
@@ -216,7 +215,7 @@ def _lost_form(
 
 
 def _members_in(constraint: Constraint) -> Iterator[str]:
-    if isinstance(constraint.wording, Wording):
+    if constraint.wording is not None:
         for node in ast.walk(constraint.wording.node):
             if isinstance(node, ast.Member):
                 yield node.name.text

@@ -63,7 +63,7 @@ def stated_lengths(model: Model, scene: Scene) -> Iterator[Dimension]:
     """Yields the dimensions that the constraints of the author measure, in order of writing."""
     for constraint in model.constraints:
         checkpoint()
-        if constraint.weight is None and isinstance(constraint.wording, Wording):
+        if constraint.weight is None and constraint.wording is not None:
             yield from _Statement(scene, constraint, constraint.wording).dimensions()
 
 
@@ -71,7 +71,7 @@ def by_hand(model: Model, scene: Scene) -> Iterator[Dimension]:
     """Yields the dimensions that the program asks for, in order of writing."""
     for asked in model.by_hand:
         checkpoint()
-        assert isinstance(asked.wording, Wording)
+        assert asked.wording is not None
         yield from _Statement(scene, asked, asked.wording).asked_for()
 
 
