@@ -202,7 +202,7 @@ def invoke(
             condition = run_items(it, definition.body, inner)
             if condition is True and binding.gathered and len(values) == len(binding.arguments) == 1:
                 _says_nothing(it, node, values[0])
-            condition = placing(condition, definition, binding, values, env)
+            condition = placing(condition, binding, values, env)
             is_stated = env.reach is Reach.SUBTREE and it.place(node) is node.span  # not by the library
             if is_of_directions(candidate.signature) and is_stated:
                 ask_to_turn(condition.comparisons() if isinstance(condition, Condition) else ())
@@ -286,7 +286,7 @@ def _shape(it: Interpreter, candidate: Candidate, arguments: Arguments, node: as
             given[name] = default_of(it, parameter, kind, env.within(scope))
         if isinstance(given[name], Nothing):
             return NOTHING
-    _bind_shape(it, definition.parameters, candidate.signature, given, geometry, scope)
+    _bind_shape(it, candidate.signature, given, geometry)
     run_block(it, definition.body.statements, Env(scope, env.here))
     _bind_above(it, geometry, given, env)
     return geometry
@@ -305,38 +305,28 @@ def _bind_above(it: Interpreter, geometry: Geometry, given: Arguments, env: Env)
         it.following.append(g)
 
 
-def _bind_shape(
-    it: Interpreter,
-    parameters: Sequence[ast.Parameter],
-    signature: Signature,
-    given: Arguments,
-    geometry: Geometry,
-    scope: Scope,
-) -> None:
+def _bind_shape(it: Interpreter, signature: Signature, given: Arguments, geometry: Geometry) -> None:
     """Binds number and point arguments to one unknown each (or what they refer to); the rest is constant."""
     # A point given by itself comes before those in lists: it is where an outline begins.
     order = sorted(given.items(), key=lambda item: not isinstance(item[1], PointVal))
     points = [found for name, value in order for found in _points_in(name, value)]
     placed = positions(it, [p for _, p in points], geometry, [n for n, _ in points])
     moved = dict(zip((n for n, _ in points), placed, strict=True))
+    parameters = certain(signature.node, ast.ShapeDefinition).parameters
     for parameter, (name, kind, _) in zip(parameters, signature.parameters, strict=True):
         value = given[name]
-        word = parameter.type.text if parameter.type else ""
-        if isinstance(value, Num):
-            value = _bind_number(it, value, kind, word, name, given, geometry)
+        if isinstance(value, Num) and parameter.type and parameter.type.text == "turn":
+            value = turn(it, value, geometry, name, rotatable=given.get("rotatable") is True)
+        elif isinstance(value, Num):
+            value = _bind_number(it, value, kind, name, geometry)
         else:
             value = _bind_inside(it, value, name, moved, geometry)
-        scope.values[name] = value
+        certain(geometry.scope, Scope).values[name] = value
 
 
-def _bind_number(
-    it: Interpreter, value: Num, kind: object, word: str, name: str, given: Arguments, geometry: Geometry
-) -> Num:
-    whole = isinstance(kind, NumberType) and kind.whole
-    if whole:
+def _bind_number(it: Interpreter, value: Num, kind: Type, name: str, geometry: Geometry) -> Num:
+    if isinstance(kind, NumberType) and kind.whole:
         return value
-    if word == "turn":
-        return turn(it, value, geometry, name, rotatable=given.get("rotatable") is True)
     dimension = kind.dimension if isinstance(kind, NumberType) else value.dimension
     bound = size(it, value, geometry, name, dimension)
     payload = bound.expression.payload
@@ -372,7 +362,7 @@ def _bind_inside(
             bound: dict[str, Value] = {}
             for k, v in fields.items():
                 if isinstance(v, Num):
-                    bound[k] = _bind_number(it, v, ANY, "", f"{name}.{k}", {}, geometry)
+                    bound[k] = _bind_number(it, v, ANY, f"{name}.{k}", geometry)
                 else:
                     bound[k] = _bind_inside(it, v, f"{name}.{k}", moved, geometry)
             return RecordVal(bound)

@@ -175,12 +175,26 @@ def positions(
     placed: list[PointVal] = []
     anchors: dict[str, tuple[Num, Expression, str]] = {}
     before: tuple[PointVal, PointVal, str] | None = None
+
+    def coordinate(axis: str, number: Num, name: str) -> Expression:
+        """Returns one coordinate: exact, a first guess, or a difference from the first guess before it."""
+        if number.status >= Exactness.FIXED:
+            return solvable(it, number, holder.span)
+        if axis not in anchors or number.status is Exactness.GUESS:
+            made = it.unknown(number.value, holder, f"{name}.{axis}", dimension=LENGTH)
+            anchors.setdefault(axis, (number, made, name))
+            return made
+        first, base, since = anchors[axis]
+        offset = number.value - first.value
+        if Exactness.PARAM in (number.status, first.status):
+            return base + offset
+        return base + it.unknown(offset, holder, f"{name}.d{axis}", dimension=LENGTH, kept=True, since=since)
+
     for at, name in zip(points, names, strict=True):
         if edges and literal(at) and before is not None and _differ(before[0], at):
             made = _beyond(it, before, at, holder, name)
         else:
-            x = _coordinate(it, "x", at.x, anchors, holder, name)
-            made = point(x, _coordinate(it, "y", at.y, anchors, holder, name))
+            made = point(coordinate("x", at.x, name), coordinate("y", at.y, name))
         if literal(at):
             before = (at, made, name)
         it.became_point(at, made, holder, name)
@@ -215,29 +229,6 @@ def _beyond(
 def _way(a: PointVal, b: PointVal) -> tuple[Num, Num]:
     x, y = b.x.value - a.x.value, b.y.value - a.y.value
     return Num(ex.constant(math.hypot(x, y)), LENGTH), Num(ex.constant(math.degrees(math.atan2(y, x))), ANGLE)
-
-
-def _coordinate(
-    it: Interpreter,
-    axis: str,
-    number: Num,
-    anchors: dict[str, tuple[Num, Expression, str]],
-    holder: Holder,
-    name: str,
-) -> Expression:
-    """Returns one coordinate: exact, a first guess, or a difference from the first guess before it."""
-    if number.status >= Exactness.FIXED:
-        return solvable(it, number, holder.span)
-    if axis not in anchors or number.status is Exactness.GUESS:
-        made = it.unknown(number.value, holder, f"{name}.{axis}", dimension=LENGTH)
-        anchors.setdefault(axis, (number, made, name))
-        return made
-    first, base, since = anchors[axis]
-    offset = number.value - first.value
-    if Exactness.PARAM in (number.status, first.status):
-        return base + offset
-    kept = it.unknown(offset, holder, f"{name}.d{axis}", dimension=LENGTH, kept=True, since=since)
-    return base + kept
 
 
 def _point(it: Interpreter, g: Geometry, a: Arguments, env: Env) -> None:

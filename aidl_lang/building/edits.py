@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from functools import partial
-from typing import TypeVar
+from typing import TypeAlias, TypeVar
 
 from aidl_lang.building import expression as ex
 from aidl_lang.building.calls import bound, hoist_values
@@ -58,6 +58,9 @@ class EditCall:
     call: ast.Call
     scope: Scope
     indices: tuple[int, ...]
+
+
+Edits: TypeAlias = Sequence[EditCall]
 
 
 def is_edit(it: Interpreter, node: ast.Node, scope: Scope) -> bool:
@@ -157,12 +160,7 @@ def _tried(it: Interpreter, action: Callable[[], T]) -> T | None:
 
 
 def motion_of(
-    it: Interpreter,
-    edits: Sequence[EditCall],
-    thing: Value,
-    centre: Place,
-    here: Structure,
-    placed: Motion = STILL,
+    it: Interpreter, edits: Edits, thing: Value, centre: Place, here: Structure, placed: Motion = STILL
 ) -> Motion:
     """Returns all edits as one motion after that of `at`; one that fails is reported and changes nothing."""
     motion = placed
@@ -273,7 +271,7 @@ def referred(value: PointVal | Num) -> str | None:
 
 
 def frame_edited(
-    it: Interpreter, edits: Sequence[EditCall], s: Structure, at: PointVal, turn: Num | None
+    it: Interpreter, edits: Edits, s: Structure, at: PointVal, turn: Num | None
 ) -> tuple[PointVal, Num | None]:
     """Returns the place of a structure, with the edits below it applied."""
     assert s.parent is not None
@@ -359,7 +357,7 @@ def edited(
     it: Interpreter,
     node: ast.Assign,
     value: Value,
-    edits: Sequence[EditCall],
+    edits: Edits,
     env: Env,
     placed: GeometryPlacement | None = None,
 ) -> Value:
@@ -389,7 +387,7 @@ class _Editing:
     it: Interpreter
     node: ast.Assign
     first: Geometry
-    edits: Sequence[EditCall]
+    edits: Edits
     env: Env
     cause: ast.Node
     placed: GeometryPlacement | None = None

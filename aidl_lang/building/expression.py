@@ -12,12 +12,14 @@ import math
 import operator
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import field
-from typing import TYPE_CHECKING, NamedTuple, Protocol
+from typing import TYPE_CHECKING, NamedTuple, Protocol, TypeAlias, TypeVar
 
 from aidl_lang.common.records import record
 
 if TYPE_CHECKING:
     from aidl_lang.building.model import Geometry, Structure
+
+T = TypeVar("T")
 
 DEGREE = math.pi / 180.0
 
@@ -420,6 +422,34 @@ def unknowns(roots: Iterable[Expression]) -> Iterator[Unknown]:
                 stack.extend(node.args)
 
 
+Leaf: TypeAlias = Callable[[Expression], T]
+Operations: TypeAlias = Mapping[str, Callable[..., T]]
+
+
+def folded(root: Expression, known: dict[Expression, T], make: Operations[T], leaf: Leaf[T]) -> T:
+    """Returns what an expression comes to: each node below it is worked out once, and then `known`."""
+    stack = [root]
+    while stack:
+        node = stack[-1]
+        if node in known:
+            stack.pop()
+            continue
+        args = node.args
+        if node.op == "lazy":
+            args = (node.payload.spelled_out,)  # type: ignore[attr-defined]
+        if missing := [a for a in args if a not in known]:
+            stack += missing
+            continue
+        stack.pop()
+        if not args:
+            known[node] = leaf(node)
+        elif node.op == "lazy":
+            known[node] = known[args[0]]
+        else:
+            known[node] = make[node.op](*[known[a] for a in args])
+    return known[root]
+
+
 @record(frozen=False)
 class Evaluator:
     """An evaluator of expressions at given values of the unknowns, each node once.
@@ -432,27 +462,7 @@ class Evaluator:
     _memo: dict[Expression, float] = field(default_factory=dict)
 
     def __call__(self, root: Expression) -> float:
-        memo = self._memo
-        stack = [root]
-        while stack:
-            node = stack[-1]
-            if node in memo:
-                stack.pop()
-                continue
-            args = node.args
-            if node.op == "lazy":
-                args = (node.payload.spelled_out,)  # type: ignore[attr-defined]
-            if missing := [a for a in args if a not in memo]:
-                stack += missing
-                continue
-            stack.pop()
-            if not args:
-                memo[node] = self._leaf(node)
-            elif node.op == "lazy":
-                memo[node] = memo[args[0]]
-            else:
-                memo[node] = EVALUATE[node.op](*[memo[a] for a in args])
-        return memo[root]
+        return folded(root, self._memo, EVALUATE, self._leaf)
 
     def _leaf(self, node: Expression) -> float:
         if node.op == "unknown":

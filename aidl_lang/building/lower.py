@@ -306,24 +306,7 @@ class _Lowering:
     # --- Expressions ---------------------------------------------------------------------------
 
     def _node(self, root: Expression) -> int:
-        known, make, leaf = self.node_of, self.make, self._leaf
-        if root in known:
-            return known[root]
-        stack = [root]
-        while stack:
-            node = stack[-1]
-            if node in known:
-                stack.pop()
-                continue
-            ready = True
-            for arg in node.args:
-                if arg not in known:
-                    stack.append(arg)
-                    ready = False
-            if ready:
-                stack.pop()
-                known[node] = make[node.op](*[known[a] for a in node.args]) if node.args else leaf(node)
-        return known[root]
+        return ex.folded(root, self.node_of, self.make, self._leaf)
 
     def _leaf(self, node: Expression) -> int:
         if node.op == "constant":

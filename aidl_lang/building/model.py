@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import field, replace
 from functools import cached_property, reduce
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, ClassVar, TypeAlias
 
 from aidl_lang.building import expression as ex
 from aidl_lang.building.expression import Expression, Place, Unknown
@@ -424,6 +424,10 @@ class Comparison:
         return ex.unknowns([self.left, self.right]) if self.beside is None else self.beside
 
 
+Part: TypeAlias = "Condition | Comparison | bool"
+"""A part of a condition."""
+
+
 @record(eq=False)
 class Condition:
     """A condition over unknowns: a comparison, or `and`, `or`, `not` of conditions."""
@@ -431,7 +435,7 @@ class Condition:
     value_type = TruthType()
 
     operator: str
-    parts: tuple[Condition | Comparison | bool, ...]
+    parts: tuple[Part, ...]
 
     def comparisons(self) -> Iterator[Comparison]:
         for part in self.parts:

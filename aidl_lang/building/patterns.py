@@ -15,7 +15,7 @@ from aidl_lang.building.copies import centre_of, copied
 from aidl_lang.building.curves import NOWHERE, Motion, defining, turned, xy
 from aidl_lang.building.expression import Expression, Place
 from aidl_lang.building.model import Assertion, Comparison, Condition, Geometry, Structure, reach_of
-from aidl_lang.building.state import Arguments, Env, Function, Interpreter
+from aidl_lang.building.state import Arguments, Env, Function, Indices, Interpreter
 from aidl_lang.building.values import (
     NOTHING,
     Exactness,
@@ -49,7 +49,6 @@ if TYPE_CHECKING:
 # They are built in because they make structures, which no definition of the language can do. A template is
 # instantiated once; the other members are copies over the same unknowns.
 
-Index = tuple[int, ...]
 
 _ORIGIN = PointVal(number(0.0, LENGTH), number(0.0, LENGTH))
 
@@ -148,7 +147,7 @@ class _Call:
                 hints=["write it around the origin; or give no place: the row begins where it stands"],
             )
 
-    def laid_out(self, motions: Iterable[tuple[Index, Motion | None]]) -> Value:
+    def laid_out(self, motions: Iterable[tuple[Indices, Motion | None]]) -> Value:
         """Returns the members; one without a motion is the thing itself."""
         made = Pattern(self.node.callee.text, self.settings)
         for index, motion in motions:
@@ -220,7 +219,7 @@ def _in_steps(call: _Call, ways: tuple[tuple[int, Place], ...]) -> Value:
     call.settings.fields.setdefault("start", point(*start))
     call.settings.fields.setdefault("center", point(*(start + span)))
 
-    def motion(index: Index) -> Motion | None:
+    def motion(index: Indices) -> Motion | None:
         away = sum((i * step for i, (_, step) in zip(index, ways, strict=True)), NOWHERE)
         if goes_on:
             moves = first is back or any(index)

@@ -33,7 +33,7 @@ from aidl_lang.syntax import ast
 from aidl_lang.typecheck import Program
 
 if TYPE_CHECKING:
-    from aidl_lang.building.attributes import StatedClip, StatedOrder
+    from aidl_lang.building.attributes import Stated
     from aidl_lang.building.copies import Copier
     from aidl_lang.building.overloads import CallSite
     from aidl_lang.common.lettering import Font
@@ -46,7 +46,10 @@ if TYPE_CHECKING:
 # evaluated when it is read.
 
 
-def indexed(name: str, indices: Sequence[int]) -> str:
+Indices: TypeAlias = tuple[int, ...]
+
+
+def indexed(name: str, indices: Indices) -> str:
     """Returns the name of a member of an array: `dot[3]`."""
     return name + "".join([f"[{i}]" for i in indices]) if indices else name
 
@@ -287,9 +290,9 @@ class Interpreter:
     """no box leaves out those of descendants that it is compared with"""
     literals: list[Literal] = field(default_factory=list)
     pending: dict[Structure, list[tuple[ast.Statement, Env]]] = field(default_factory=dict)
-    orders: dict[Structure, list[StatedOrder]] = field(default_factory=dict)
+    orders: dict[Structure, list[Stated]] = field(default_factory=dict)
     """what is said of the order of structures beside others"""
-    clips: dict[Structure, StatedClip] = field(default_factory=dict)
+    clips: dict[Structure, Stated] = field(default_factory=dict)
     """what is said of the outlines that structures are clipped to"""
     written: dict[ast.Node, tuple[float, float] | float] = field(default_factory=dict)
     watched: frozenset[ast.Node] = frozenset()

@@ -21,6 +21,7 @@ from aidl_lang.building.model import Frame, Geometry, Holder, Structure, chain
 from aidl_lang.building.state import (
     Env,
     Executor,
+    Indices,
     Interpreter,
     LetBinding,
     ParamBinding,
@@ -54,7 +55,7 @@ from aidl_lang.syntax import ast
 
 
 def declare(
-    it: Interpreter, env: Env, name: ast.Identifier, value: Value | VarBinding, indices: tuple[int, ...] = ()
+    it: Interpreter, env: Env, name: ast.Identifier, value: Value | VarBinding, indices: Indices = ()
 ) -> None:
     """Gives a value a name in the structure or shape whose body this is."""
     target = env.scope.declaring()
@@ -100,9 +101,7 @@ def index_values(it: Interpreter, nodes: Sequence[ast.Expression], env: Env) -> 
     return tuple(found)
 
 
-def give_name(
-    geometry: Geometry, name: str, indices: tuple[int, ...], container: Holder, node: ast.Assign
-) -> None:
+def give_name(geometry: Geometry, name: str, indices: Indices, container: Holder, node: ast.Assign) -> None:
     geometry.name = indexed(name, indices)
     geometry.container = container
     geometry.construction = geometry.construction or node.construction
@@ -110,7 +109,7 @@ def give_name(
         geometry.span = node.span
 
 
-def adopt(value: Value, name: str, indices: tuple[int, ...], container: Holder, node: ast.Assign) -> None:
+def adopt(value: Value, name: str, indices: Indices, container: Holder, node: ast.Assign) -> None:
     """Gives nameless geometry the name it is assigned to; geometry with a name keeps it."""
     if isinstance(value, Geometry):
         if value.name is None:
@@ -138,14 +137,14 @@ class Assignment:
     env: Env
     first: dict[Instantiation, tuple[Structure, Frame]] = field(default_factory=dict)
 
-    def whole(self, value: Value, indices: tuple[int, ...]) -> Value:
+    def whole(self, value: Value, indices: Indices) -> Value:
         """Returns the assignment's value: every structure in it made, every geometry of a pattern named."""
         match value:
             case Pattern() | StructureCopy(source=Structure()) if self.node.placement is not None:
                 self._stands(value)
         return self.value(value, indices)
 
-    def value(self, value: Value, indices: tuple[int, ...]) -> Value:
+    def value(self, value: Value, indices: Indices) -> Value:
         match value:
             case Instantiation():
                 return instantiate(self.it, self.node, value, self.env, indices)
@@ -175,7 +174,7 @@ class Assignment:
             hint = "say where it goes in the copy: `copy(x, by: (10, 0))`, `mirror(x, about: y_axis)`"
         self.it.report("E0330", message, self.node.placement, hints=[hint], fix=fix)
 
-    def _pattern(self, pattern: Pattern, indices: tuple[int, ...]) -> Pattern:
+    def _pattern(self, pattern: Pattern, indices: Indices) -> Pattern:
         container, name = self.env.holder, self.node.name.text
         give_name(pattern.settings, name, indices, container, self.node)
         pattern.name = indexed(name, indices)
@@ -195,7 +194,7 @@ class Assignment:
                 if unknown.holder is pattern.settings and not unknown.kept:
                     unknown.frame_of = structure
 
-    def _copy(self, copy: StructureCopy, indices: tuple[int, ...]) -> Value:
+    def _copy(self, copy: StructureCopy, indices: Indices) -> Value:
         motion, source = copy.motion, copy.source
         if isinstance(source, Structure):
             return self._of(source, _framed(source, self.env.here), motion, indices)
@@ -204,8 +203,8 @@ class Assignment:
         return self._instance(source, motion, indices, copy)
 
     def _instance(
-        self, template: Instantiation, motion: Motion, indices: tuple[int, ...], copy: StructureCopy
-    ) -> Structure | Nothing:
+        self, template: Instantiation, motion: Motion, indices: Indices, copy: StructureCopy
+    ) -> Value:
         if not (motion.scale.is_constant and motion.scale.value == 1.0):
             message = f"`{template.signature.name}` makes a structure of the sizes that it is given"
             hint = "pass it other sizes, or name the structure first and scale a copy of it"
@@ -227,9 +226,7 @@ class Assignment:
             self.first[template] = made, own[0]
         return made
 
-    def _of(
-        self, source: Structure, frame: Frame, motion: Motion, indices: tuple[int, ...]
-    ) -> Structure | Nothing:
+    def _of(self, source: Structure, frame: Frame, motion: Motion, indices: Indices) -> Value:
         outward = (g for g in self.it.following if not g.bound_to.is_within(source))
         follower = next((g for g in outward if g.owner.is_within(source)), None)
         if follower is not None:
@@ -275,7 +272,7 @@ def _assign(it: Interpreter, node: ast.Assign, env: Env) -> None:
     declare(it, env, node.name, value, indices)
 
 
-def _made(it: Interpreter, node: ast.Assign, env: Env, indices: tuple[int, ...]) -> Value:
+def _made(it: Interpreter, node: ast.Assign, env: Env, indices: Indices) -> Value:
     """Returns the value of an assignment: placed, and edited by the statements below it."""
     value = evaluate(it, node.value, env)
     if isinstance(value, Nothing | Instantiation):
@@ -290,7 +287,7 @@ def _made(it: Interpreter, node: ast.Assign, env: Env, indices: tuple[int, ...])
     return edited(it, node, value, edits_on(it, node.name.text, indices, env.scope), env, placed)
 
 
-def _named(it: Interpreter, node: ast.Assign, value: Value, env: Env, indices: tuple[int, ...]) -> Value:
+def _named(it: Interpreter, node: ast.Assign, value: Value, env: Env, indices: Indices) -> Value:
     """Returns the value under its new name: a literal point becomes geometry."""
     is_list = isinstance(value, ListVal) and not indices and _is_literal_point(node.value)
     if isinstance(value, PointVal) or is_list:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from functools import cache
 from pathlib import PurePath
 
@@ -12,7 +12,7 @@ from aidl_lang.building.attributes import read_attributes, settle_clips_in, sett
 from aidl_lang.building.calls import default_of, hoist_callables, hoist_values, run_block
 from aidl_lang.building.coerce import as_point, numeric
 from aidl_lang.building.construct import hidden_constraints, loose_place, solvable
-from aidl_lang.building.edits import EditCall, edits_on, frame_edited
+from aidl_lang.building.edits import Edits, edits_on, frame_edited
 from aidl_lang.building.evaluate import evaluate
 from aidl_lang.building.impose import read_constraint
 from aidl_lang.building.members import passed, read_param, report_unused
@@ -203,19 +203,15 @@ def _body(structure: Structure, name: str, scope: Scope, labels: tuple[str, ...]
 
 
 def _place(
-    it: Interpreter,
-    s: Structure,
-    placement: ast.Placement | None,
-    scope: Scope,
-    edits: Sequence[EditCall] = (),
+    it: Interpreter, s: Structure, node: ast.Placement | None, scope: Scope, edits: Edits = ()
 ) -> None:
     """Sets the frame: `at` is a position, `rotated` is exact unless it is a guess or an unknown."""
     if s.parent is None:
-        if placement is not None:
+        if node is not None:
             message = "the root's frame is fixed, so `at` and `rotated` change nothing here"
-            it.report("W0502", message, placement)
+            it.report("W0502", message, node)
         return
-    at, turn = place_of(it, placement, Env(scope, s.parent))
+    at, turn = place_of(it, node, Env(scope, s.parent))
     if edits:
         at, turn = frame_edited(it, edits, s, at, turn)
     x, y = loose_place(it, at, s)

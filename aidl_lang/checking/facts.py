@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import reduce
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 
 from aidl_lang.checking import builtins
 from aidl_lang.checking.symbols import Symbol, SymbolKind, SymbolScope
@@ -41,7 +41,9 @@ class ReadPlace:
     below: tuple[str, ...] = ()
 
 
-NOTHING_READ: frozenset[ReadPlace] = frozenset()
+Reads: TypeAlias = frozenset[ReadPlace]
+
+NOTHING_READ: Reads = frozenset()
 
 
 @record(slots=True)
@@ -57,7 +59,7 @@ class Fact:
     """
 
     type: Type = ANY
-    reads: frozenset[ReadPlace] = NOTHING_READ
+    reads: Reads = NOTHING_READ
     of: ast.Node | None = None
     place: ReadPlace | None = None
     bare: Symbol | None = None

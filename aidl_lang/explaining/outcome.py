@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -18,6 +18,7 @@ from aidl_lang.building.model import (
     Geometry,
     Measurement,
     Model,
+    Part,
     Structure,
     told,
 )
@@ -207,9 +208,7 @@ def _can_be_stated(condition: Condition | bool) -> bool:
     return len(parts) == len(condition.parts) and not _is_measured(parts)
 
 
-def _false_parts(
-    condition: Condition | Comparison | bool, evaluate: Callable[..., float]
-) -> Iterator[Comparison]:
+def _false_parts(condition: Part, evaluate: Evaluator) -> Iterator[Comparison]:
     if isinstance(condition, Comparison):
         if not holds(condition, evaluate, _TOLERANCE):
             yield condition
@@ -218,7 +217,7 @@ def _false_parts(
             yield from _false_parts(part, evaluate)
 
 
-def _compared(comparison: Comparison, evaluate: Callable[..., float]) -> str:
+def _compared(comparison: Comparison, evaluate: Evaluator) -> str:
     from aidl_lang.common.prose import short
 
     left, right = evaluate(comparison.left), evaluate(comparison.right)
