@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import functools
 import re
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING
 
 from aidl_lang.checking.binding import FIELDS, PARAMETERS
 from aidl_lang.checking.builtins import WORDS, word_set
+from aidl_lang.checking.imports import exchanged
 from aidl_lang.checking.rules import place_before
 from aidl_lang.checking.symbols import UNKNOWNS, Symbol, SymbolKind, SymbolScope, word_meant
 from aidl_lang.checking.types import Signature
@@ -24,8 +23,6 @@ if TYPE_CHECKING:
 
 
 # --- Names of other languages and programs, with their counterparts here.
-
-_Node = TypeVar("_Node", bound=ast.Node)
 
 
 def _words(*lines: str) -> frozenset[str]:
@@ -119,35 +116,20 @@ def without_idle(module: ast.Module, modules: Sequence[ast.Module]) -> tuple[ast
     """Returns a file without statements such as `solve()` and `show(base)`, and a note on each; calls of
     functions that one of the files defines stay.
     """
-    notes: list[Diagnostic] = []
-
-    @functools.cache
-    def defined() -> set[str]:
+    statements = (node for node in ast.walk(module) if isinstance(node, ast.ExpressionStatement))
+    idle = {node: word for node in statements if (word := _idle_word(node.value))}
+    if idle:
         nodes = (node for each in modules for node in ast.walk(each))
-        return {fold(node.name.text) for node in nodes if isinstance(node, ast.Callable | ast.Alias)}
-
-    def is_idle(node: ast.Node) -> bool:
-        if not (isinstance(node, ast.ExpressionStatement) and isinstance(call := node.value, ast.Call)):
-            return False
-        word = fold(call.callee.text)
-        return word in IDLE and isinstance(call.receiver, ast.Name | None) and word not in defined()
-
-    def kept(node: _Node) -> _Node:
-        changes: dict[str, Any] = {}
-        for field in _BODIES:
-            inner = getattr(node, field, None)
-            if isinstance(inner, ast.Block):
-                changes[field] = kept(inner)
-            elif field == "statements" and inner is not None:
-                notes.extend(_idle(s) for s in inner if is_idle(s))
-                changes[field] = tuple(kept(s) for s in inner if not is_idle(s))
-        same = all(getattr(node, field) == value for field, value in changes.items())
-        return node if same else replace(node, **changes)
-
-    return kept(module), notes
+        defined = {fold(node.name.text) for node in nodes if isinstance(node, ast.Callable | ast.Alias)}
+        idle = {node: word for node, word in idle.items() if word not in defined}
+    return exchanged(module, dict.fromkeys(idle)) if idle else module, list(map(_idle, idle))
 
 
-_BODIES = ("statements", "body", "then", "otherwise", "items")
+def _idle_word(call: ast.Expression) -> str:
+    """Returns the folded name of a call of `IDLE`; "" for anything else."""
+    if not isinstance(call, ast.Call) or not isinstance(call.receiver, ast.Name | None):
+        return ""
+    return word if (word := fold(call.callee.text)) in IDLE else ""
 
 
 def _idle(node: ast.ExpressionStatement) -> Diagnostic:
