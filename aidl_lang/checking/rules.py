@@ -16,7 +16,7 @@ from aidl_lang.checking.types import (
     Type,
 )
 from aidl_lang.checking.units import ANGLE, AREA, LENGTH, MaybeDimension
-from aidl_lang.common.prose import with_article
+from aidl_lang.common.prose import shortened, with_article
 from aidl_lang.common.records import record
 from aidl_lang.common.source import Span
 from aidl_lang.syntax import ast
@@ -36,8 +36,7 @@ def a(kind: Type) -> str:
 
 def shown(node: ast.Node) -> str:
     """Returns the text of an expression on one line, shortened if it is long."""
-    text = node.span.one_line
-    return text if len(text) <= _LONGEST else text[: _LONGEST - 1] + "…"
+    return shortened(node.span.one_line, _LONGEST)
 
 
 def place_before(node: ast.Node) -> Span:
