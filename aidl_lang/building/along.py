@@ -31,16 +31,14 @@ from aidl_lang.common.records import record
 # to where these come to lie: exact as long as the curve keeps its form, in whatever size and place, and very
 # near where it bends. What is left is looked at once everything is solved.
 
-_NODES = (4, 6, 8, 12, 16)
-"""The terms of a length: as few as do."""
+_NODES = (4, 6, 8, 12, 16)  # the terms of a length: as few as do
 _EXACT = 1e-10
 _DEEPEST = 10
 _STEPS = 60
 _FOLLOWING = 3
 _NEAR = 1e-15
 _STALLED = 1e-6
-_QUARTER = 4
-"""Cubics to a quarter of an ellipse, which are off by 7e-8 of its radius."""
+_QUARTER = 4  # cubics to a quarter of an ellipse, which are off by 7e-8 of its radius
 
 
 Met = tuple[Place, list[Expression]]
@@ -259,14 +257,11 @@ KINDS = frozenset({"line", "arc", "circle"})
 FREE_KINDS = frozenset({"bezier", "ellipse"})
 """Curves that are walked as cubics."""
 
-_SMOOTH = 1e-4
-"""Degrees by which what goes on without a corner may turn."""
-_BESIDE = 0.125
-"""Share of a stretch from its ends where a place may come to lie on the one beside it."""
+_SMOOTH = 1e-4  # degrees by which what goes on without a corner may turn
+_BESIDE = 0.125  # share of a stretch from its ends where a place may come to lie on the one beside it
 _DEGREES = ex.constant(180.0 / math.pi)
 _RADIANS = ex.constant(math.pi / 180.0)
-_MEETS = 1e-6
-"""Distance of two ends that are one, relative to the extent of the curves or in mm."""
+_MEETS = 1e-6  # distance of two ends that are one, relative to the extent of the curves or in mm
 
 
 @record(eq=False)

@@ -317,12 +317,7 @@ EDGES = ("seams", "outline")
 SHADES = ("round", "ball", "slope", "fade", "none")
 NO_OUTLINE = TextVal("none")
 """What `@stroke` says of solids and areas without outline; a width of 0 says the same."""
-_WORDS = {
-    "orientation": ORIENTATIONS,
-    "edges": EDGES,
-    "shade": SHADES,
-    "stroke": (NO_OUTLINE.value,),
-}
+_WORDS = {"orientation": ORIENTATIONS, "edges": EDGES, "shade": SHADES, "stroke": (NO_OUTLINE.value,)}
 """The words of attributes."""
 
 

@@ -258,8 +258,7 @@ def _curve(primitive: Geometry, here: Structure, side: str) -> Iterable[Expressi
     return curves.reach(primitive, here, side)
 
 
-_AS_WIDE = frozenset({"hull", "union", "shell"})
-"""Outlines whose box is the box of their sources."""
+_AS_WIDE = frozenset({"hull", "union", "shell"})  # outlines whose box is the box of their sources
 
 
 def _made(outline: Geometry, recipe: Recipe, here: Structure, side: str) -> Iterator[Expression]:

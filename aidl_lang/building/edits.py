@@ -322,8 +322,7 @@ def check_edit(it: Interpreter, call: ast.Call, env: Env) -> None:
 
 # --- The making of geometry that is edited: with other arguments, or else turned as a whole.
 
-_CLOSE = 1e-9
-"""The part of the size of the shape by which two numbers may differ and count as one."""
+_CLOSE = 1e-9  # the part of the size of the shape by which two numbers may differ and count as one
 
 
 @record()

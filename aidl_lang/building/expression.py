@@ -432,21 +432,21 @@ def folded(root: Expression, known: dict[Expression, T], make: Operations[T], le
     while stack:
         node = stack[-1]
         if node in known:
-            stack.pop()
-            continue
-        args = node.args
-        if node.op == "lazy":
-            args = (node.payload.spelled_out,)  # type: ignore[attr-defined]
-        if missing := [a for a in args if a not in known]:
-            stack += missing
-            continue
-        stack.pop()
-        if not args:
-            known[node] = leaf(node)
-        elif node.op == "lazy":
-            known[node] = known[args[0]]
-        else:
+            pass
+        elif args := node.args:
+            if missing := [a for a in args if a not in known]:
+                stack += missing
+                continue
             known[node] = make[node.op](*[known[a] for a in args])
+        elif node.op == "lazy":
+            inner: Expression = node.payload.spelled_out  # type: ignore[attr-defined]
+            if inner not in known:
+                stack.append(inner)
+                continue
+            known[node] = known[inner]
+        else:
+            known[node] = leaf(node)
+        stack.pop()
     return known[root]
 
 

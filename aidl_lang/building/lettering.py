@@ -129,8 +129,7 @@ def is_filled(a: Arguments, glyphs: Sequence[Glyph]) -> bool:
     return a["outline"] is not True and not any(glyph.is_stroked for glyph in glyphs)
 
 
-_BRIDGE = 0.1
-"""Width of the bridges of a stencil, in heights of a capital, where none is told."""
+_BRIDGE = 0.1  # width of the bridges of a stencil, in heights of a capital, where none is told
 
 
 def bridge(it: Interpreter, a: Arguments) -> Num | None:

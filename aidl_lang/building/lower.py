@@ -110,11 +110,9 @@ class Placing(Generic[N]):
 
 _RADIAN = 180.0 / np.pi
 
-_LONGEST_TURN = 60.0
-"""Degrees that an angle may turn in one step of the solver."""
+_LONGEST_TURN = 60.0  # degrees that an angle may turn in one step of the solver
 
-_SIDES = frozenset({"left", "right"}), frozenset({"bottom", "top"})
-"""The sides of boxes by axis."""
+_SIDES = frozenset({"left", "right"}), frozenset({"bottom", "top"})  # the sides of boxes by axis
 
 LEAST_SHARE = 1e-3
 """The least part of a kept size that remains when it gives way: it may shrink, but not vanish."""
@@ -462,8 +460,7 @@ def _places(structure: Structure, holder: Structure) -> Iterator[Expression]:
         yield from (frame.x, frame.y, frame.rotation)
 
 
-_Seen = tuple[Expression, Expression] | tuple[Expression]
-"""A place, or a number."""
+_Seen = tuple[Expression, Expression] | tuple[Expression]  # a place, or a number
 
 
 def seen(s: Structure) -> Iterator[tuple[Geometry | Structure, str, _Seen]]:

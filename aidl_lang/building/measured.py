@@ -23,13 +23,10 @@ FORMULAS = (
     "with holes inside"
 )
 OTHERWISE = "by the outline it does, but what is drawn is rounded, clipped, crossed or cut by more"
-_MEET = 1e-6
-"""How near ends have to be to meet, relative to the extent of the outline."""
+_MEET = 1e-6  # how near ends have to be to meet, relative to the extent of the outline
 _SAMPLES = 16
-_MOMENTS = 5
-"""Terms that are exact for the moments of a cubic: polynomials of degree 8."""
-_MEANS = 6
-"""Steps of the arithmetic-geometric mean: exact for ellipses up to 1000 times as long as wide."""
+_MOMENTS = 5  # terms that are exact for the moments of a cubic: polynomials of degree 8
+_MEANS = 6  # steps of the arithmetic-geometric mean: exact for ellipses up to 1000 times as long as wide
 
 
 @record(eq=False)

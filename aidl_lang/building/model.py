@@ -454,8 +454,7 @@ class Constraint:
     text: str
     span: Span
     weight: float | None = None
-    label: str = ""
-    """loop variables at the place, as `i = 3`"""
+    label: str = ""  # loop variables at the place, as `i = 3`
     wording: Wording | None = field(default=None, repr=False)
     """the statement, to be read in other words (see building.wording); None for what was not stated"""
     is_inherent: bool = False
@@ -482,12 +481,10 @@ class Assertion:
     text: str
     span: Span
     label: str = ""
-    shape: str = ""
-    """the shape that demands this of its arguments"""
+    shape: str = ""  # the shape that demands this of its arguments
     wording: Wording | None = field(default=None, repr=False)
     """the condition, to be read again in parts (see building.wording)"""
-    outline: Geometry | None = None
-    """the outline whose box a constraint foresaw to be as this asks"""
+    outline: Geometry | None = None  # the outline whose box a constraint foresaw to be as this asks
     is_followed: bool = False
     """the members of a pattern are where they are on a curve that was solved to another form"""
     extent: float = 0.0

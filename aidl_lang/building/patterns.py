@@ -347,8 +347,7 @@ def _on_corners(call: _Call, way: Way, corners: Sequence[Expression]) -> list[Ex
     return [p if p.value < way.length.value else p - way.length for p in places]
 
 
-_MOST_ALONG = 20_000
-"""Members times curves: each place is worked out over all of them."""
+_MOST_ALONG = 20_000  # members times curves: each place is worked out over all of them
 
 
 def _way(call: _Call) -> Way | None:
@@ -441,8 +440,7 @@ FUNCTIONS = {
 # A character is a text of its own whose place and angle are expressions of the curve, so it stays on it
 # wherever the curve is solved to be.
 
-_UPRIGHT = TextVal("upright")
-"""The side of a curve that is not told."""
+_UPRIGHT = TextVal("upright")  # the side of a curve that is not told
 
 
 def lettered(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:

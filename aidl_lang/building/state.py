@@ -286,8 +286,7 @@ class Interpreter:
     """for readings, by number, how many places from the nearest to what is written they are to be taken"""
     states_constants: bool = False
     """conditions over constants become constraints of the model like others, and those of asserts too"""
-    whole_boxes: bool = False
-    """no box leaves out those of descendants that it is compared with"""
+    whole_boxes: bool = False  # no box leaves out those of descendants that it is compared with
     literals: list[Literal] = field(default_factory=list)
     pending: dict[Structure, list[tuple[ast.Statement, Env]]] = field(default_factory=dict)
     orders: dict[Structure, list[Stated]] = field(default_factory=dict)
@@ -300,8 +299,7 @@ class Interpreter:
     call_sites: list[ast.Node] = field(default_factory=list)
     hidden: list[tuple[Geometry, tuple[Comparison, ...]]] = field(default_factory=list)
     runaway: set[ast.Node] = field(default_factory=set)
-    copiers: list[Copier] = field(default_factory=list)
-    """the makers of the copies, in order"""
+    copiers: list[Copier] = field(default_factory=list)  # the makers of the copies, in order
     ahead: list[Ahead] = field(default_factory=list)
     edits: dict[ast.Call, CallEdit] = field(default_factory=dict)
     """calls that are run with their arguments changed"""
@@ -315,16 +313,14 @@ class Interpreter:
     text"""
     numbers: dict[ast.Number, Num] = field(default_factory=dict)
     """numbers of the text, which are the same each time they are met"""
-    fonts: dict[str, Font] = field(default_factory=dict)
-    """font files by path, as texts name them"""
+    fonts: dict[str, Font] = field(default_factory=dict)  # font files by path, as texts name them
     frames_turn: bool = False
     """the program mentions the rotation of structures, which a constraint on it frees"""
     root: Structure | None = None
     errors: int = 0
     entities: int = 0
     turns: int = 0
-    runs: int = 0
-    """of statements that finish corners"""
+    runs: int = 0  # of statements that finish corners
 
     # --- Reporting -----------------------------------------------------------------------------
 

@@ -60,8 +60,7 @@ _LOST = {
     "thread": "no drawing sheet tells of its thread",
 }
 """By attribute of a cut, what is missing where its circle stands alone."""
-_PLACED_IN = ("solid", "assembly")
-"""Kinds of structures in which the name of a cut means a whole hole."""
+_PLACED_IN = ("solid", "assembly")  # kinds of structures in which the name of a cut means a whole hole
 
 
 def tell_plain_cuts(it: Interpreter, hole: ast.Structure, scope: Scope, around: Structure | None) -> None:
@@ -122,8 +121,7 @@ def _fix(hole: ast.Structure, statement: ast.Assign, placed: ast.Structure) -> F
 
 # --- Structures, in place and from templates, with their frames and, if they are empty, their boxes.
 
-_PLAN = 10.0
-"""Width and height at which the box of an empty structure starts, in mm."""
+_PLAN = 10.0  # width and height at which the box of an empty structure starts, in mm
 
 
 def build_structure(

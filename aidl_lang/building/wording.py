@@ -307,11 +307,9 @@ def _is_exact(value: Value | None) -> bool:
 
 _DIGITS = range(6, 18)
 """Significant digits in which a number is shown: the fewest that tell the two sides apart."""
-_GIVEN = 4
-"""Places that are shown at most."""
+_GIVEN = 4  # places that are shown at most
 
-_ROUNDED = 1e-4
-"""Relative difference up to which two numbers may be one and its rounding."""
+_ROUNDED = 1e-4  # relative difference up to which two numbers may be one and its rounding
 
 Stated = tuple[ast.Expression, str, ast.Expression]
 

@@ -196,8 +196,7 @@ COORDINATES: tuple[tuple[str, str, tuple[str, ...]], ...] = (
 
 Outcomes: TypeAlias = Sequence[Binding | Mismatch]
 
-_MOST_KEPT = 16
-"""Arguments of a call whose outcomes are cached: hardly any has more, and those take memory."""
+_MOST_KEPT = 16  # arguments of a call whose outcomes are cached: hardly any has more, and those take memory
 
 
 def outcomes(candidates: Sequence[Signature], given: Given) -> Outcomes:

@@ -60,10 +60,7 @@ _CALLS = _by_word(
     ("pow power", "powers are written `x ^ 2`"),
     ("mod fmod", "the remainder is written `a % b`"),
     ("list array tuple", "lists are written `[1, 2, 3]`, or `[i * 10 for i in 0..3]`"),
-    (
-        "require ensure check",
-        "what must hold is written `constrain …`, or `assert …` to check it at the end",
-    ),
+    ("require ensure check", "what must hold is written `constrain …`, or `assert …` to check it at the end"),
     ("param parameter slider knob", "a parameter is declared by `param w = 80 in 20..200`"),
     ("var variable unknown", "an unknown is declared by `var gap = 5`"),
     ("linear_pattern pattern", "copies in a row are made by `linear_array(…)`"),
@@ -95,10 +92,7 @@ _VALUES = _by_word(
     ("e euler", "write the number: `2.718281828`"),
     ("is equals", "equality is written `a == b`"),
     ("between", "a range is written `x in 3..5`"),
-    (
-        "model sketch doc part cq b3d wp workplane canvas",
-        "constraints and geometry are written without it",
-    ),
+    ("model sketch doc part cq b3d wp workplane canvas", "constraints and geometry are written without it"),
 )
 
 

@@ -36,8 +36,7 @@ N = TypeVar("N", bound=ast.Node)
 
 _FOLDED = frozenset(map(fold, CUTS))
 _HOLDING = ("solid", "assembly")
-_CENTER = 1
-"""The index of the centre among the arguments of every cut."""
+_CENTER = 1  # the index of the centre among the arguments of every cut
 
 
 def with_placed_cuts(module: ast.Module) -> ast.Module:

@@ -115,9 +115,7 @@ list_on_a_line = _refusal(
 no_whole_number = _refusal("E0302", "{} must be a whole number, not {}")
 fraction = _refusal("E0306", "{} must be a whole number, and this is `{}`")
 no_order = _refusal(
-    "E0309",
-    "points have no order, so `{}` does not compare them",
-    "compare coordinates, as in `a.x <= b.x`",
+    "E0309", "points have no order, so `{}` does not compare them", "compare coordinates, as in `a.x <= b.x`"
 )
 no_domain = _refusal("E0314", "the range of a `param` is as `20..200` or a list of choices, not {}")
 unknown_yet = _refusal(

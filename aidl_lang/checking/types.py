@@ -386,8 +386,7 @@ class Signature:
     """
 
     name: str
-    parameters: tuple[tuple[str, Type, bool], ...]
-    """name, type, and whether it has a default"""
+    parameters: tuple[tuple[str, Type, bool], ...]  # name, type, and whether it has a default
     node: ast.Callable | None = None
     kind: type[ast.Callable] | None = None
     takes_any: bool = False
@@ -502,8 +501,7 @@ class Mismatch:
         return f"{self.problem} to be {with_article(wanted)}, not {other}"
 
 
-_GATHERED = 20
-"""The cost of collecting arguments into a list: an overload that names them comes before."""
+_GATHERED = 20  # the cost of collecting arguments into a list: an overload that names them comes before
 
 
 def bind(signature: Signature, given: Given) -> Binding | Mismatch:

@@ -31,18 +31,14 @@ from aidl_lang.syntax import ast
 
 _PROVEN = (Failure.CONTRADICTORY, Failure.OVERDETERMINED)
 """Reasons that do not depend on where the search began."""
-_ROUNDED = 1e-6
-"""Violations up to this, in the constraint's own units, are told as rounding."""
-_FINISHED = 5
-"""The most fixes that are tried for whether the program then compiles to the end."""
+_ROUNDED = 1e-6  # violations up to this, in the constraint's own units, are told as rounding
+_FINISHED = 5  # the most fixes that are tried for whether the program then compiles to the end
 _LIKE = 2.0
 """Factor up to which a dearer fix is offered in place of one that changes what says nothing new then."""
 NAMED = 3
 """The most things that a list names."""
-_SHOWN = 12
-"""The most places shown beside the one that a message is about."""
-_QUOTED = 60
-"""The most characters of a constraint that a headline quotes."""
+_SHOWN = 12  # the most places shown beside the one that a message is about
+_QUOTED = 60  # the most characters of a constraint that a headline quotes
 
 
 def explained(lowered: Lowered, solution: Solution, trials: Trials) -> list[Explanation]:
@@ -457,14 +453,10 @@ def measured_in(value: float, stated: Constraint) -> str:
 # Before anything is refused, and before a size changes much, the calls that take part are tried the other
 # ways.
 
-_MOST = 64
-"""The most ways that are tried."""
-_RANKS = (1, 2, 3)
-"""Ranks by distance of the readings that are tried, after the nearest."""
-_SECONDS, _LONGEST = 4.0, 0.2
-"""Time after which no other way is begun, and for one: what solves does so soon."""
-_MUCH = 0.1
-"""Relative change of a size above which other readings are tried."""
+_MOST = 64  # the most ways that are tried
+_RANKS = (1, 2, 3)  # ranks by distance of the readings that are tried, after the nearest
+_SECONDS, _LONGEST = 4.0, 0.2  # time after which no other way is begun, and for one: what solves does so soon
+_MUCH = 0.1  # relative change of a size above which other readings are tried
 _STILL = 1e-6
 _DIGITS = (2, 3, 6)
 _LOOK = "look whether this is how it is meant"

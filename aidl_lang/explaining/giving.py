@@ -29,10 +29,8 @@ from aidl_lang.solver.problem import Failure
 # --- The sizes and frames that gave way unasked, with the constraints that ask for it: sizes that changed,
 # frames that moved though their content is exact or no constraint names them (language, "What gives way").
 
-_A_TENTH = 0.1 + 1e-9
-"""Greatest relative change of a size that is no warning."""
-_STILL = 1e-6
-"""Moves of a frame below this, in mm or degrees, count as none."""
+_A_TENTH = 0.1 + 1e-9  # greatest relative change of a size that is no warning
+_STILL = 1e-6  # moves of a frame below this, in mm or degrees, count as none
 
 
 @record()
@@ -226,18 +224,14 @@ def _told(
 # --- Reports constraints that follow from others and parts whose freedom is undecided; tells whether one
 # constraint follows.
 
-_NAMED = 4
-"""The most constraints that the headline names."""
+_NAMED = 4  # the most constraints that the headline names
 _LARGEST = 2000
 """The most unknowns of a model that is solved again to see whether a constraint can be left out."""
-_SAME = 1e-6
-"""Change of a value, in units of its scale, that counts as none."""
+_SAME = 1e-6  # change of a value, in units of its scale, that counts as none
 _BROKEN = 1e-2
 """Violation of an inequality, in units of its scale, that is tried to see whether others forbid it."""
-_TRIED = 20
-"""The most inequalities that are tried so, one by one."""
-_SECONDS = 1.0
-"""Time for each of them."""
+_TRIED = 20  # the most inequalities that are tried so, one by one
+_SECONDS = 1.0  # time for each of them
 
 
 def repetition_notes(lowered: Lowered, solution: Solution, freedom: Freedom) -> list[Diagnostic]:

@@ -27,8 +27,7 @@ from aidl_lang.solver.newton import Clock
 from aidl_lang.solver.problem import GroupFailure
 from aidl_lang.syntax import ast
 
-_MOST = 12
-"""The most exact numbers behind the names mentioned; nearer ones first."""
+_MOST = 12  # the most exact numbers behind the names mentioned; nearer ones first
 _FACTORING = ("*", "/", "%", "^")
 _BY_DEFINITION = frozenset({SymbolKind.FUNCTION, SymbolKind.SHAPE, SymbolKind.CONSTRAINT, SymbolKind.ALIAS})
 """Kinds of symbols that belong to the vocabulary rather than to the drawing."""
@@ -165,16 +164,12 @@ MOST = 5
 """The most failures that prolong the latter, each by the former."""
 GAVE_WAY = frozenset({"N0601", "W0601", "W0602"})
 """Codes of diagnostics that report what gave way."""
-_TOLD = GAVE_WAY | {"N0604"}
-"""These codes, and that of a program solved from elsewhere."""
-_LONGEST = 0.5
-"""Seconds for one solve."""
+_TOLD = GAVE_WAY | {"N0604"}  # these codes, and that of a program solved from elsewhere
+_LONGEST = 0.5  # seconds for one solve
 _FLAT = 3e-3
 """Singular values of unit rows that count as none: a search stops near the place where all lies flat."""
-_TURNS = 1e-3
-"""Change of the slope of a unit row that is none by rounding."""
-_MOVED = 1e-6
-"""Moves below this, in mm or degrees, count as none."""
+_TURNS = 1e-3  # change of the slope of a unit row that is none by rounding
+_MOVED = 1e-6  # moves below this, in mm or degrees, count as none
 
 
 @record(frozen=False)
