@@ -227,8 +227,7 @@ def _lies_inside(outline: Geometry, whole: Structure, ignored: frozenset[Structu
     """Tells whether an outline made of others is a part of one in the same box, as a pattern is of the wall
     that it fills: it takes no room of its own then.
     """
-    recipe = outline.recipe
-    if recipe is None:
+    if (recipe := outline.recipe) is None:
         return False
     covers: Sequence[tuple[Geometry, ...]] = ()
     match recipe.kind:

@@ -67,8 +67,7 @@ def call(it: Interpreter, node: ast.Call, env: Env) -> Value:
         receiver = evaluate(it, node.receiver, env)
         if isinstance(receiver, Nothing):
             return NOTHING
-    candidates = candidates_of(it, node, env.scope, receiver)
-    if not candidates:
+    if not (candidates := candidates_of(it, node, env.scope, receiver)):
         return NOTHING  # reported by the checker, or its file could not be imported
     site = site_of(it, node, candidates)
     around, env = env, _env_of_arguments(site, env)
@@ -86,8 +85,7 @@ def call(it: Interpreter, node: ast.Call, env: Env) -> Value:
         return NOTHING
     candidate = candidates[site.signatures.index(chosen.signature)]
     values, nodes = arranged(chosen, given, nodes)
-    arguments = bound(it, chosen, values, nodes, env)
-    if arguments is None:
+    if (arguments := bound(it, chosen, values, nodes, env)) is None:
         return NOTHING
     if (edit := it.edits.get(node)) is not None:
         arguments = edit(chosen, arguments)
@@ -133,8 +131,7 @@ def bound(
             result[name] = ListVal(tuple(item for i in indices for item in spliced(values[i])))
             continue
         at = nodes[indices[0]]
-        value = _as_kind(it, values[indices[0]], kind, at, env)
-        if value is None:
+        if (value := _as_kind(it, values[indices[0]], kind, at, env)) is None:
             return None
         is_flag = isinstance(kind, TruthType) and (signature.kind is None or name == "rotatable")
         if is_flag and isinstance(value, Condition):  # decides how something is made, so it has to be known
@@ -297,8 +294,7 @@ def _bind_above(it: Interpreter, geometry: Geometry, given: Arguments, env: Env)
     if env.reach is not Reach.ABOVE:
         return
     owners = (owner for value in given.values() for owner in owners_of(value, env.here))
-    reach = reach_of(owners, env.here)
-    if reach is None:
+    if (reach := reach_of(owners, env.here)) is None:
         return
     for g in (geometry, *all_parts(geometry)):
         g.reach = reach

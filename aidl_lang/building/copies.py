@@ -396,8 +396,7 @@ def centre_of(it: Interpreter, value: Value, node: ast.Node, env: Env) -> Place:
         case Geometry():
             if (known := _own_centre(it, value, node, here)) is not None:
                 return xy(known)
-    box = box_of(value, here)
-    if box is None:
+    if (box := box_of(value, here)) is None:
         return NOWHERE
     return Place(*spelled_out(*certain(box.field("center"), PointVal).place))
 
@@ -454,8 +453,7 @@ def _copy(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
     to = xy(a["center"]) if "center" in a else about
     if "by" in a:
         to = to + xy(a["by"])
-    motion = _motion(it, a.get("angle"), a.get("scale"), about, to, node)
-    if motion is None:
+    if (motion := _motion(it, a.get("angle"), a.get("scale"), about, to, node)) is None:
         return NOTHING
     copied_things = _geometry_in(a["x"])
     is_loose = any(g.name is None for g in copied_things) or isinstance(a["x"], Instantiation)

@@ -152,8 +152,7 @@ def field(g: Geometry, name: str, here: Structure) -> Value | None:
     core = view(g, here)
     if name in core:
         return core[name]
-    formulas = FORMULAS.get(g.type)
-    if formulas is None:
+    if (formulas := FORMULAS.get(g.type)) is None:
         return None
     if formulas.pieces is not None and name in ("start", "end"):
         at = 0 if name == "start" else -1

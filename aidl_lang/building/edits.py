@@ -169,8 +169,7 @@ def motion_of(
         now = thing
         if motion is not STILL and isinstance(thing, Geometry):
             now = Copier(it, here, motion).geometry(thing)
-        step = _step(it, edit, now, place, here)
-        if step is not None:
+        if (step := _step(it, edit, now, place, here)) is not None:
             motion = after(motion, step)
     return motion
 
@@ -196,8 +195,7 @@ def _step(it: Interpreter, edit: EditCall, thing: Value, centre: Place, here: St
             it.report("E0311", f"`{node.callee.text}` {chosen[0].reason}", node)
         return None
     taken, places = arranged(chosen, values, nodes)
-    arguments = bound(it, chosen, taken, places, env)
-    if arguments is None:
+    if (arguments := bound(it, chosen, taken, places, env)) is None:
         return None
     arguments = {name: v if name == "x" else as_written(v) for name, v in arguments.items()}
     return motion_for(it, arguments, lambda: centre, node)
@@ -281,8 +279,7 @@ def frame_edited(
         hint = f"make a copy of another size: `{s.name}_2 = copy({s.name}, scale: …, at: …)`"
         it.report("E0334", message, edits[0].call, hints=[hint])
         return at, turn
-    source = referred(at)
-    if source is not None:
+    if (source := referred(at)) is not None:
         follows(it, edits[0].call, s.name, source)
         return at, turn
     moved = motion.point(at)
@@ -471,8 +468,7 @@ class _Editing:
 
 def _defaults(binding: Binding) -> Iterator[tuple[str, Value]]:
     """Yields the omitted positions and directions of a call with their defaults."""
-    definition = binding.signature.node
-    if definition is None:
+    if (definition := binding.signature.node) is None:
         for name, kind, optional in binding.signature.parameters:
             if optional and isinstance(kind, PointType):
                 yield name, _at(0.0, 0.0)

@@ -193,8 +193,7 @@ def truth(it: Interpreter, value: Value, node: ast.Node) -> bool:
 
 def _name(it: Interpreter, node: ast.Name, env: Env) -> Value:
     name = it.spelled(node)
-    found = env.scope.find(name)
-    if found is not None:
+    if (found := env.scope.find(name)) is not None:
         return read(it, found.values[name], node, env)
     for scope in env.scope.chain():
         if (branch := scope.unbuilt.get(name)) is not None:
@@ -213,12 +212,10 @@ def _index(it: Interpreter, node: ast.Index, env: Env) -> Value:
         return NOTHING
     if isinstance(value, RecordVal) and isinstance(index, TextVal):
         return entry(it, value, index.value, node.index)
-    items = members(value)
-    if items is None:
+    if (items := members(value)) is None:
         it.misfit(rules.no_members(shown(node.value), type_of(value)), node)
         return NOTHING
-    position = whole(it, index, node.index, "an index")
-    if position is None:
+    if (position := whole(it, index, node.index, "an index")) is None:
         return NOTHING
     if isinstance(value, Array):
         if (position,) in value.members:
@@ -312,8 +309,7 @@ def arithmetic(it: Interpreter, op: str, a: Num, b: Num, node: ast.Node) -> Num 
         if op in "+-" and a.dimension is b.dimension:
             dimension = a.dimension
         elif op == "^":
-            exponent = constant(it, b, node, "an exponent")
-            if exponent is None:
+            if (exponent := constant(it, b, node, "an exponent")) is None:
                 return NOTHING
             dimension = units.power(a.dimension, exponent)
         else:
@@ -379,8 +375,7 @@ def _membership(it: Interpreter, node: ast.Membership, env: Env) -> Value:
         low = compare(it, ">=", value, container.start, node, env, sides)
         high = compare(it, "<" if container.exclusive else "<=", value, container.end, node, env, sides)
         return conjunction(it, "and", low, high, node)
-    items = members(container)
-    if items is None:
+    if (items := members(container)) is None:
         it.misfit(rules.needed("a range or a list", type_of(container)), node.container)
         return NOTHING
     result: Value = False

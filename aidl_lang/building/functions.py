@@ -108,15 +108,13 @@ def color_of(it: Interpreter, values: Sequence[Value], node: ast.Node) -> str | 
     plain: list[str | float] = []
     for value in values:
         if isinstance(value, Num):
-            known = constant(it, value, node, "a colour")
-            if known is None:
+            if (known := constant(it, value, node, "a colour")) is None:
                 return None
             plain.append(known)
         else:
             text = as_text(value)
             plain.append(text if text is not None else kind_of(value))
-    color = css_color(plain)
-    if color is None:
+    if (color := css_color(plain)) is None:
         _unknown(it, plain, node)
     return color
 
@@ -165,8 +163,7 @@ def _of_one(
     name: str = "value",
 ) -> Function:
     def function(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
-        value = numeric(it, a[name], node, env)
-        if value is None:
+        if (value := numeric(it, a[name], node, env)) is None:
             return NOTHING
         try:
             result = dimension(value.dimension)
@@ -198,15 +195,13 @@ def _hypot(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
     x, y = numeric(it, a["a"], node, env), numeric(it, a["b"], node, env)
     if x is None or y is None:
         return NOTHING
-    kind = _common(it, [x, y], node)
-    if kind is None:
+    if (kind := _common(it, [x, y], node)) is None:
         return NOTHING
     return _checked(it, Num(ex.apply("hypot", x.expression, y.expression), *kind), node)
 
 
 def _numbers(it: Interpreter, a: Arguments, name: str, node: ast.Call, env: Env) -> list[Num] | None:
-    items = members(a[name])
-    if items is None:
+    if (items := members(a[name])) is None:
         it.report("E0302", f"`{node.callee.text}` wants numbers or a list of them", node)
         return None
     found = [numeric(it, item, node, env) for item in items]
@@ -347,8 +342,7 @@ def _where(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
     test, yes, no = (numeric(it, a[name], node, env) for name in ("value", "positive", "negative"))
     if test is None or yes is None or no is None:
         return NOTHING
-    kind = _common(it, [yes, no], node)
-    if kind is None:
+    if (kind := _common(it, [yes, no], node)) is None:
         return NOTHING
     status = max(kind[1], test.status)
     return Num(ex.apply("select", test.expression, yes.expression, no.expression), kind[0], status)

@@ -88,8 +88,7 @@ def record_dimension(it: Interpreter, node: ast.Call, env: Env) -> None:
         return
     things = measured(node)
     values = [evaluate(it, thing, env) for thing in things]
-    reason = next(_reasons(things, values), "")
-    if reason:
+    if reason := next(_reasons(things, values), ""):
         hint = "as in `dimension(body.left, eye.center)`, `dimension(a.x, b.x)` or `dimension(rim)`"
         it.report("E0590", f"this dimension measures nothing: {reason}", node, hints=[hint])
         return
@@ -425,8 +424,7 @@ def _held(it: Interpreter, node: ast.Call, env: Env) -> Value:
         value = evaluate(it, argument, env)
         if isinstance(value, Nothing):
             return value
-        numbers = list(_numbers(it, value, argument, env))
-        if not numbers:
+        if not (numbers := list(_numbers(it, value, argument, env))):
             it.report("E0321", f"{kind_of(value)} has nothing to hold", argument)
         found += [compare_numbers(it, "==", n, number(n.value, n.dimension), node) for n in numbers]
     return all_of(found)
@@ -437,8 +435,7 @@ def _numbers(it: Interpreter, value: Value, node: ast.Expression, env: Env) -> I
         case Num() | PointVal():
             yield from numbers_of(value)
         case Geometry():
-            at = as_point(it, value, node, env)
-            if at is not None:
+            if (at := as_point(it, value, node, env)) is not None:
                 yield from numbers_of(at)
             else:
                 yield from (Num(e, LENGTH) for e in defining(value, env.here))

@@ -65,8 +65,7 @@ def _broken(name: str, reason: FontError) -> NoFontError:
 
 
 def _of_file(it: Interpreter, name: str) -> Font:
-    world = it.program.resolution.world
-    if world is None:
+    if (world := it.program.resolution.world) is None:
         raise NoFontError("E0359", f"`{name}` cannot be read: only this text is at hand")
     try:
         path = relative_to(name, _writer(it))

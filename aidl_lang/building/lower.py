@@ -74,8 +74,7 @@ class Placing(Generic[N]):
 
     def __call__(self, x: N, y: N, owner: Structure) -> tuple[N, N]:
         """Returns a point in the frame of `owner`, as the root sees it."""
-        way = self._ways.get(owner)
-        if way is None:
+        if (way := self._ways.get(owner)) is None:
             way = self._way(owner)
         if not way:
             return x, y
@@ -142,8 +141,7 @@ def preference(lowered: Lowered) -> list[int]:
     """Returns the constraints as conflicts take them for granted: unwritten ones first, then as written."""
 
     def place(index: int) -> tuple[bool, str, int, int]:
-        stated = lowered.stated[index]
-        if stated is None:
+        if (stated := lowered.stated[index]) is None:
             return (False, "", 0, index)
         return (stated.wording is not None, stated.span.source.name, stated.span.start, index)
 
@@ -311,8 +309,7 @@ class _Lowering:
             return self.tape.constant(node.value)
         if not isinstance(node.payload, Unknown):
             raise TypeError(f"`{node.op}` is known only once all is drawn")
-        number = self.numbers.get(node.payload)
-        if number is None:
+        if (number := self.numbers.get(node.payload)) is None:
             return self.tape.constant(node.payload.guess)
         return self.tape.unknown(number, shifts=_axis(node.payload) >= 0)
 

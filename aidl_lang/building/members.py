@@ -329,8 +329,7 @@ def _geometry_member(it: Interpreter, g: Geometry, name: str, node: ast.Node, en
         fields = dict.fromkeys((*offered(g.type), *g.fields))
         key = find(name, fields) or name
         reached = may_read(it, g.bound_to, node, env)
-        value = curves.field(g, key, env.here)
-        if value is not None:
+        if (value := curves.field(g, key, env.here)) is not None:
             return value if reached else as_written(value)
     box = boxes.box_of(g, env.here)
     return _box_field(it, box, name, node, env) if box else None
@@ -518,8 +517,7 @@ def _from_outside(it: Interpreter, path: str, written: Value) -> Value:
         return written
     it.used_overrides.add(key)
     given = it.overrides[key]
-    value = _parse(given, written)
-    if value is None:
+    if (value := _parse(given, written)) is None:
         other = "true or false" if isinstance(written, bool) else "a number"
         kind = "a text" if isinstance(written, TextVal) else other
         it.report("E0910", f"`{key}={given}` does not fit: `{path}` is {kind}", None)
@@ -539,8 +537,7 @@ def _parse(given: str | float | bool, written: Value) -> Value | None:
                 return None
             if isinstance(given, int | float):
                 return number(float(given), dimension) if ex.is_number(given) else None
-            matched = _NUMBER.fullmatch(given)
-            if matched is None:
+            if (matched := _NUMBER.fullmatch(given)) is None:
                 return None
             factor, unit = UNITS.get(matched[2], (1.0, None))
             if matched[2] and (unit is None or dimension not in (None, unit)):

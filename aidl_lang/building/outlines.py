@@ -61,8 +61,7 @@ def _outline(kind: str, *words: str) -> Function:
         geometry = Geometry(kind, env.here, it.place(node))
         operands: list[tuple[Geometry, ...]] = []
         for value in _operands(kind, a):
-            group = _sources(it, kind, value, node, env)
-            if group is None:
+            if (group := _sources(it, kind, value, node, env)) is None:
                 return NOTHING
             operands.append(tuple(group))
         if kind == "tiled":
@@ -135,8 +134,7 @@ def _word(it: Interpreter, name: str, value: Value | None, node: ast.Call) -> st
     if value is None:
         return allowed[0]
     written = value.value if isinstance(value, TextVal) else ""
-    meant = find(_SYNONYMS.get(fold(written), written), dict.fromkeys(allowed))
-    if meant is None:
+    if (meant := find(_SYNONYMS.get(fold(written), written), dict.fromkeys(allowed))) is None:
         choices = ", ".join(ticked(allowed))
         hint = f"it is one of {choices}" if len(allowed) > 1 else f"it is a length, or {choices}"
         it.report("E0516", f'`{name}: "{written}"` is not known', node, hints=[hint])
@@ -268,8 +266,7 @@ def _sizes(it: Interpreter, kind: str, a: Arguments, target: _Target) -> tuple[N
 
 
 def _targets(it: Interpreter, value: Value, node: ast.Node, env: Env) -> Iterator[_Target | None]:
-    items = members(value)
-    if items is None:
+    if (items := members(value)) is None:
         yield _target(it, value, node, env, node.span.one_line)
         return
     curves = [item for item in items if isinstance(item, Geometry) and item.type != "point"]

@@ -186,8 +186,7 @@ class CallSite:
         before, found = self._last
         if kinds == before:  # usually so, and types are slow to hash
             return found
-        known = self._meanings.get(kinds)
-        if known is None:
+        if (known := self._meanings.get(kinds)) is None:
             if len(self._meanings) >= _MOST_MEANINGS:
                 self._meanings.clear()
             known = self._meanings[kinds] = select(self.signatures, given_to(self.node, kinds))

@@ -176,8 +176,7 @@ def _called(answer: Callable[[_Call], Value]) -> Function:
 
 
 def _linear_array(call: _Call) -> Value:
-    n = call.count("n")
-    if n is None:
+    if (n := call.count("n")) is None:
         return NOTHING
     if "by" in call.a:
         step = xy(call.a["by"])
@@ -230,8 +229,7 @@ def _in_steps(call: _Call, ways: tuple[tuple[int, Place], ...]) -> Value:
 
 
 def _polar_array(call: _Call) -> Value:
-    n = call.count("n")
-    if n is None:
+    if (n := call.count("n")) is None:
         return NOTHING
     if "radius" not in call.a and not call.has_place:
         what = "a template is laid out on a circle, whose `radius` is not said"
@@ -315,8 +313,7 @@ def _evenly(call: _Call, way: Way) -> list[Expression] | None:
         message = f"nothing is left of a curve of {length.value:g} mm with {what}"
         call.wrong(message, "make the `inset` less")
         return None
-    found = _steps(call, room, is_closed=way.is_closed)
-    if found is None:
+    if (found := _steps(call, room, is_closed=way.is_closed)) is None:
         return None
     n, step = found
     first = inset
@@ -330,8 +327,7 @@ def _evenly(call: _Call, way: Way) -> list[Expression] | None:
 def _on_corners(call: _Call, way: Way, corners: Sequence[Expression]) -> list[Expression] | None:
     """Returns the ways to members in all corners of a closed way, and evenly between each and the next."""
     runs = [b - a for a, b in pairwise([*corners, corners[0] + way.length])]
-    found = _steps(call, way.length, is_closed=True)
-    if found is None:
+    if (found := _steps(call, way.length, is_closed=True)) is None:
         return None
     parts = [1 if "n" in call.a else max(1, round(run.value / found[1].value)) for run in runs]
     if "n" in call.a and found[0] < len(runs):
@@ -407,8 +403,7 @@ def _way_between(call: _Call) -> Value:
 
 def _steps(call: _Call, room: Expression, *, is_closed: bool) -> tuple[int, Expression] | None:
     if "n" in call.a:
-        n = call.count("n")
-        if n is None:
+        if (n := call.count("n")) is None:
             return None
         parts = n if is_closed else n - 1
         return n, room / float(parts) if parts > 0 else ex.ZERO

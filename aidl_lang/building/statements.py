@@ -94,8 +94,7 @@ def declare(
 def index_values(it: Interpreter, nodes: Sequence[ast.Expression], env: Env) -> tuple[int, ...] | None:
     found: list[int] = []
     for node in nodes:
-        index = whole(it, evaluate(it, node, env), node, "an index")
-        if index is None:
+        if (index := whole(it, evaluate(it, node, env), node, "an index")) is None:
             return None
         found.append(index)
     return tuple(found)

@@ -162,8 +162,7 @@ def instantiate(
         for parameter, (key, kind, _) in zip(
             definition.parameters or (), template.signature.parameters, strict=True
         ):
-            value = template.arguments.get(key)
-            if value is None:
+            if (value := template.arguments.get(key)) is None:
                 value = default_of(it, parameter, kind, Env(body, structure))
             given = (a.value for a in template.node.arguments if a.name is not None and a.name.text == key)
             body.values[key] = passed(it, key, value, structure, here, next(given, parameter))
@@ -240,8 +239,7 @@ def _rotation(it: Interpreter, placement: ast.Placement | None, env: Env) -> Num
     if placement is None or placement.rotated is None:
         return None
     value = evaluate(it, placement.rotated, env)
-    found = numeric(it, value, placement.rotated, env)
-    if found is None:
+    if (found := numeric(it, value, placement.rotated, env)) is None:
         return None
     if found.dimension not in (None, ANGLE):
         wrong = rules.unwanted("`rotated`", NumberType(ANGLE), type_of(found), shown(placement.rotated))

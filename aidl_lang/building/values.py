@@ -313,8 +313,7 @@ def each_of(value: Value, kind: type[T]) -> Iterator[T]:
 
 def leaves(value: Value) -> Iterator[Value]:
     """Yields a value, or what a list or an array holds, at any depth."""
-    items = members(value)
-    if items is None:
+    if (items := members(value)) is None:
         yield value
     else:
         for item in items:

@@ -227,8 +227,7 @@ def call(check: Inference, node: ast.Call) -> Fact:
     nodes = arguments(check, node)
     facts = [check.fact(n) for n in nodes]
     reads = frozenset().union(*(f.reads for f in facts)) if facts else NOTHING_READ
-    candidates = check.resolution.candidates.get(node)
-    if candidates is None:
+    if (candidates := check.resolution.candidates.get(node)) is None:
         return Fact(reads=reads)
     given = given_to(node, [_may_be(f.type, n) for f, n in zip(facts, nodes, strict=True)])
     found = outcomes(candidates, given)

@@ -164,8 +164,7 @@ def unknown_name(resolver: Resolver, node: ast.Name, scope: SymbolScope) -> None
     if any(a.value is node for a in given) and word_meant(name, WORDS) is not None:
         resolver.resolution.uses[node] = Symbol(name, SymbolKind.WORD)
         return
-    called = scope.called(name)
-    if called is not None:
+    if (called := scope.called(name)) is not None:
         kind = kind_of(called[1][0])
         message = f"`{name}` is a {kind} and has to be called: `{name}(…)`"
         resolver.report("E0206", message, node, label="a name alone means a value")

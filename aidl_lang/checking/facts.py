@@ -145,8 +145,7 @@ def _loop_variable(check: Inference, symbol: Symbol) -> Fact:
     assert isinstance(loop, ast.For | ast.ForArguments | ast.Comprehension)
     if len(loop.variables) > 1:
         return UNKNOWN
-    run = check.facts.get(loop.iterable)
-    if run is None:
+    if (run := check.facts.get(loop.iterable)) is None:
         return UNKNOWN
     if isinstance(run.type, RangeType):
         return Fact(NumberType(None, whole=True)) if _is_plain_range(loop.iterable) else UNKNOWN

@@ -176,8 +176,7 @@ def _without_center(call: ast.Call) -> tuple[ast.Call, ast.Expression | None]:
     named = (a for a, word in words if "center" in (word, *PARAMETERS.get(word, ())))
     unnamed = [a for a in call.arguments if a.name is None]
     by_place = unnamed[_CENTER] if len(unnamed) > _CENTER and call.receiver is None else None
-    found = next(named, by_place)
-    if found is None:
+    if (found := next(named, by_place)) is None:
         return call, None
     return replace(call, arguments=tuple(a for a in call.arguments if a is not found)), found.value
 

@@ -130,8 +130,7 @@ class Inference:
 
     def fact(self, node: ast.Node) -> Fact:
         """Returns the fact of an expression; of one at the end of a very long chain of names, UNKNOWN."""
-        known = self.facts.get(node)
-        if known is not None:
+        if (known := self.facts.get(node)) is not None:
             return known
         if self._depth >= _DEEPEST:
             return UNKNOWN

@@ -555,8 +555,7 @@ def _fitted(found: Binding, given: Given) -> Binding | Mismatch:
             defaulted += not isinstance(kind, TruthType)  # a flag left out assumes nothing
         elif name != gathered:
             index = arguments[name][0]
-            step = accepts(kind, given[index].type)
-            if step is None:
+            if (step := accepts(kind, given[index].type)) is None:
                 return Mismatch(signature, f"needs `{name}`", index, kinds=(kind, given[index].type))
             distance += step
             turned += optional and kind in _TURNS and given[index].type in _BARE

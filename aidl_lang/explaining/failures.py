@@ -356,8 +356,7 @@ class Explanation:
         return ("", "", "conflicts with the other", "conflicts with the others")[min(len(self.parties), 3)]
 
     def _would_fit(self, party: _StatedMember) -> str:
-        found = self._remedy_of(party)
-        if found is None:
+        if (found := self._remedy_of(party)) is None:
             return ""
         assert party.stated.node is not None
         times = self.times[party.stated.span]

@@ -404,8 +404,7 @@ _ALLOWING = re.compile(r"@allow\([^()]*\)(\s|//[^\n]*\n|@allow\([^()]*\))*(const
 def left_out(constraint: Constraint) -> Fix | None:
     """Removes a statement that stands alone on a line or between semicolons, with `@allow(…)` said of it."""
     span, text = constraint.span, constraint.span.source.text
-    allowing = _ALLOWING.search(text, 0, span.start)
-    if allowing is not None:
+    if (allowing := _ALLOWING.search(text, 0, span.start)) is not None:
         span = replace(span, start=allowing.start())
     line = text.rfind("\n", 0, span.start) + 1
     end = text.find("\n", span.end) + 1 or len(text)
@@ -461,8 +460,7 @@ def with_remedies(
     """
     failures: dict[Span, tuple[Constraint, GroupFailure]] = {}
     for failure in trials.solution.failures:
-        stated = trials.lowered.stated[failure.conflict[0]]
-        if stated is not None:
+        if (stated := trials.lowered.stated[failure.conflict[0]]) is not None:
             failures.setdefault(stated.span, (stated, failure))
     return [
         _answered(d, *failures[d.span], everything, trials)

@@ -224,8 +224,7 @@ class Trials:
         """Returns the violation of the constraints of a failure with no kept size changed, after the edits
         (see `solver.refuting`); None if the program then has errors or is another one.
         """
-        found = self._counterpart(edits, failure)
-        if found is None:
+        if (found := self._counterpart(edits, failure)) is None:
             return None
         other, matched, numbered = found
         if (known := self._lacks.get((id(other), failure.conflict))) is not None:
@@ -253,8 +252,7 @@ class Trials:
         """
         if (place := self._without(failure, member)) is None:
             return None
-        found = self._counterpart(edits, failure)
-        if found is None:
+        if (found := self._counterpart(edits, failure)) is None:
             return None
         other, matched, numbered = found
         there = {numbered[u]: value for u, value in place.items()}
@@ -406,8 +404,7 @@ def _in_order(lowered: Lowered) -> list[int]:
     """Returns the constraints in the order of the text; those that nobody stated come last."""
 
     def place(index: int) -> tuple[bool, str, int, str, int]:
-        stated = lowered.stated[index]
-        if stated is None:
+        if (stated := lowered.stated[index]) is None:
             return True, "", 0, "", index
         return False, stated.span.source.name, stated.span.start, stated.label, index
 
