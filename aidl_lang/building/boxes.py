@@ -184,9 +184,7 @@ def extent(side: _Side, ignored: frozenset[Structure]) -> Expression:
 def _extreme_of(candidates: list[Expression], side: str) -> Expression:
     if not candidates:
         return ex.ZERO
-    if len(candidates) == 1:
-        return candidates[0]
-    return ex.apply(towards(side).further, *candidates)
+    return candidates[0] if len(candidates) == 1 else ex.apply(towards(side).further, *candidates)
 
 
 def _extremes(

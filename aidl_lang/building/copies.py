@@ -487,9 +487,7 @@ def motion_for(it: Interpreter, a: Arguments, centre: Callable[[], Place], node:
 def _motion(
     it: Interpreter, angle: Value | None, scale: Value | None, about: Place, to: Place, node: ast.Call
 ) -> Motion | None:
-    motion = Motion(about, to)
-    if isinstance(angle, Num):
-        motion = turned(angle.expression, about, to)
+    motion = turned(angle.expression, about, to) if isinstance(angle, Num) else Motion(about, to)
     if isinstance(scale, Num):
         if not scale.value > 0:
             hint = "`mirror(x, about: …)` turns a thing over"

@@ -246,9 +246,7 @@ def _cubic_extreme(controls: Sequence[Expression], positive: bool) -> Expression
 
 
 def _round(name: str, g: Geometry, here: Structure) -> Value | None:
-    if name == "diameter":
-        return length(number(view(g, here)["radius"]) * 2.0)
-    return None
+    return length(number(view(g, here)["radius"]) * 2.0) if name == "diameter" else None
 
 
 def _circle_reach(g: Geometry, here: Structure, side: str) -> Iterator[Expression]:
@@ -408,9 +406,7 @@ class Motion:
 
     def direction(self, angle: Expression) -> Expression:
         """Returns a direction in degrees, seen after the motion."""
-        if self.mirrored:
-            return _in_turn(self.turn + 180.0 - angle)
-        return _in_turn(angle + self.turn)
+        return _in_turn(self.turn + 180.0 - angle) if self.mirrored else _in_turn(angle + self.turn)
 
     def measure(self, value: Expression, dimension: MaybeDimension) -> Expression:
         """Returns a length, an area and the like after the motion: only the scale changes it."""

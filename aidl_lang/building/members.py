@@ -455,9 +455,7 @@ def _evaluate(it: Interpreter, binding: ParamBinding) -> Value:
     unit = _UNITS.get(value.dimension, "") if isinstance(value, Num) else ""
     pace = step.value if isinstance(step, Num) else 1.0 if counts and not choices else None
     it.knobs.append(Knob(path, _plain(value), low, high, choices, pace, unit, node.doc, node.span))
-    if isinstance(value, Num):
-        return Num(value.expression, value.dimension, Exactness.PARAM)
-    return value
+    return Num(value.expression, value.dimension, Exactness.PARAM) if isinstance(value, Num) else value
 
 
 def _is_whole(value: Value) -> bool:

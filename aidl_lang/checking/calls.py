@@ -285,9 +285,7 @@ def _may_be(kind: Type, node: ast.Expression) -> Type:
     """Returns the type of a number as whole if only its value can tell whether it is."""
     if isinstance(node, ast.Number) or not isinstance(kind, NumberType):
         return kind
-    if kind.dimension not in (None, PLAIN):
-        return kind
-    return NumberType(kind.dimension, whole=True)
+    return kind if kind.dimension not in (None, PLAIN) else NumberType(kind.dimension, whole=True)
 
 
 def _serve(check: Inference, fits: Sequence[Binding], nodes: Nodes, facts: Facts) -> None:

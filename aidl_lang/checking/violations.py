@@ -302,9 +302,7 @@ class Violation:
         fact = self.infer.facts.get(culprit)
         far = [p for p in self.far if fact is None or p in fact.reads] or list(self.far)
         place = far[0]
-        if not place.below:
-            return _name(place.holder)
-        return f"`{'.'.join(place.below)}`"
+        return _name(place.holder) if not place.below else f"`{'.'.join(place.below)}`"
 
     def _hint(self, relation: str | None, ancestor: ast.Node | None, written: Written) -> str:
         where = _name(ancestor) if ancestor is not None else "the structure that holds both"

@@ -163,9 +163,7 @@ class RemedySearch:
         return self._remedy(opposite, opposite.shown) if fits else None
 
     def _found(self) -> Remedy | None:
-        if self._even_target is None:
-            return self._whole()
-        return self._near(self._even_target)
+        return self._whole() if self._even_target is None else self._near(self._even_target)
 
     @cached_property
     def _even_target(self) -> float | None:
