@@ -26,9 +26,7 @@ from aidl_lang.syntax import ast
 
 @record()
 class Stated:
-    """An attribute that names things, its own name, and the scope in which it is read: of `@clip` that of its
-    structure, or of what makes the copy.
-    """
+    """An attribute that names things, its own name, and the scope in which it is read."""
 
     name: str
     attribute: ast.Attribute

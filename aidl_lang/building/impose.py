@@ -292,9 +292,7 @@ def _impose_condition(said: Wording, condition: Condition, weight: float | None)
 def _with_foreseen_boxes(
     said: Wording, comparisons: list[Comparison], weight: float | None
 ) -> list[Comparison]:
-    """Returns comparisons with the boxes of outlines made of others as they can be foreseen; they are looked
-    at again in the drawing, but for a wish.
-    """
+    """Returns comparisons with boxes as they can be foreseen; the drawing is looked at but for a wish."""
     measured = _measurements(comparisons)
     if measured and weight is None:
         (outline,) = measured[0].of

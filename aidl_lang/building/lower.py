@@ -263,9 +263,7 @@ class _Lowering:
         return self.standing[s]
 
     def _sealed(self, s: Structure) -> int:
-        """Returns the depth of the innermost `@rigid` structure around what a structure owns; 0 for none, -1
-        for the root.
-        """
+        """Returns the depth of the innermost `@rigid` structure around this; 0 for none, -1 for the root."""
         said = [each.attributes.get("rigid", (False,)) != (False,) for each in chain(s)]
         depths = (len(said) - 1 - n for n, is_rigid in enumerate(said) if is_rigid)
         return next((depth or -1 for depth in depths), 0)

@@ -469,9 +469,7 @@ class Interpreter:
         outline: bool = False,
         since: str = "",
     ) -> ex.Expression:
-        """Makes an unknown, which the structure of its holder owns if no other does. Returns it as an
-        expression.
-        """
+        """Returns a new unknown as an expression; the structure of its holder owns it if no other does."""
         owner = owner or (holder.owner if isinstance(holder, Geometry) else holder)
         if not abs(guess) <= _LARGEST_GUESS:
             guess = self._tamed(guess, holder, name)

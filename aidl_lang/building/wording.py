@@ -200,9 +200,7 @@ def all_of(parts: Iterable[Value]) -> Value:
 
 
 def holds(condition: Part, evaluate: Evaluate, tolerance: float, *, strict: bool = False) -> bool:
-    """Tells whether a condition is true at given values, within a tolerance relative to their size; `strict`
-    keeps `<` and `>` from holding for equals.
-    """
+    """Tells whether a condition is true within a relative tolerance; `strict`: equals are not `<`, `>`."""
     if isinstance(condition, bool):
         return condition
     if isinstance(condition, Comparison):

@@ -107,9 +107,7 @@ ATTRIBUTES_MEANT: Mapping[str, tuple[str, str]] = {
 
 
 def without_idle(module: ast.Module, modules: Sequence[ast.Module]) -> tuple[ast.Module, list[Diagnostic]]:
-    """Returns a file without statements such as `solve()` and `show(base)`, and a note on each; calls of
-    functions that one of the files defines stay.
-    """
+    """Returns a file without `solve()` and the like that none of the files defines, and a note on each."""
     statements = (node for node in ast.walk(module) if isinstance(node, ast.ExpressionStatement))
     idle = {node: word for node in statements if (word := _idle_word(node.value))}
     if idle:
@@ -364,9 +362,7 @@ def did_you_mean(like: Sequence[str], mark: str = "") -> str:
 
 
 def respell(node: ast.Node, like: Sequence[str]) -> Fix | None:
-    """Returns the fix that writes the nearest of the names that a name is like. It is sure if the name as
-    written is a slip for that one and no other.
-    """
+    """Returns the fix that writes the nearest name; it is sure if what is written is a slip for no other."""
     name = node.span.text
     if not like or not (is_like(name, like[0]) or like == ["self"]):
         return None

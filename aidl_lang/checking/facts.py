@@ -33,9 +33,7 @@ if TYPE_CHECKING:
 
 @record(slots=True)
 class ReadPlace:
-    """A structure whose unknowns are read: the one at the path `below`, seen from the structure `holder`
-    around the program text (or from the file).
-    """
+    """A structure whose unknowns are read: `below` is its path as the structure or file `holder` sees it."""
 
     holder: ast.Node
     below: tuple[str, ...] = ()
@@ -261,9 +259,7 @@ def part(check: Inference, definition: ast.Node, key: str) -> Fact:
 
 
 def result(check: Inference, definition: ast.FunctionDefinition) -> tuple[Fact, bool]:
-    """Returns the fact of a function's expression, and whether its result depends on the solved values of its
-    arguments, not only on those as written.
-    """
+    """Returns the fact of a function's expression, and whether it depends on solved values of arguments."""
     if check.is_standard(definition):
         return check.of_standard(result, definition)
     before, check.homes = check.homes, body_of(check, definition).homes

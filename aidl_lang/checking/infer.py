@@ -89,9 +89,7 @@ class Inference:
         return node.span.source in self._standard
 
     def of_standard(self, ask: Callable[..., T], definition: ast.Node, *more: str) -> T:
-        """Returns the answer of a question of `facts` on a definition of the library. It sees nothing of a
-        program, so each is found once.
-        """
+        """Returns the answer of `facts` on a definition of the library, which sees nothing of a program."""
         answer: T = _of_standard(self.resolution.library, ask, definition, *more)
         return answer
 

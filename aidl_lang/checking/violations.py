@@ -176,9 +176,7 @@ class Relocation:
 
 
 def insertion_after(statement: ast.Node, text: str) -> tuple[Span, str]:
-    """Returns where to write a statement behind another, and how: on a line of its own, indented alike,
-    unless more than a comment follows on the line.
-    """
+    """Returns where to write a statement behind another, and how: on a line of its own if nothing follows."""
     source = statement.span.source
     line_number, _ = source.position(statement.span.start)
     line = source.line(line_number)

@@ -247,9 +247,7 @@ class Trials:
         return others.difference(failure.conflict)
 
     def residual(self, edits: Sequence[Edit], failure: GroupFailure, member: int) -> float | None:
-        """Returns the residual of a member of a failure after the edits, with its sign, where its other
-        members hold; None if no such place was found.
-        """
+        """Returns the signed residual of a member after edits where the others hold; None if nowhere."""
         if (place := self._without(failure, member)) is None:
             return None
         if (found := self._counterpart(edits, failure)) is None:
