@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from aidl_lang.building.boxes import box_of
 from aidl_lang.building.coerce import all_within, as_point, edge_coordinate, items_of, owners_of
@@ -145,34 +145,25 @@ def bound(
 
 
 def _as_kind(it: Interpreter, value: Value, kind: Type, node: ast.Node, env: Env) -> Value | None:
-    convert = _CONVERSIONS.get(type(kind))
-    return convert(it, value, kind, node, env) if convert is not None else value
-
-
-def _as_number(it: Interpreter, value: Value, kind: NumberType, node: ast.Node, env: Env) -> Value | None:
-    if isinstance(value, Num):
-        same = value.dimension == kind.dimension
-        return value if same else Num(value.expression, kind.dimension, value.status)
-    return edge_coordinate(it, value, node, env) if isinstance(value, Geometry) else value
-
-
-def _as_list(it: Interpreter, value: Value, kind: ListType, node: ast.Node, env: Env) -> Value | None:
-    if isinstance(kind.element, PointType) and (items := members(value)) is not None:
-        points = [as_point(it, item, node, env) if isinstance(item, ListVal) else item for item in items]
-        return ListVal(tuple(p for p in points if p is not None))
-    if isinstance(value, Array | RangeVal):
-        held = items_of(it, value, node)
-        return ListVal(tuple(held)) if held is not None else None
-    return value
-
-
-_CONVERSIONS: Mapping[type[Type], Callable[..., Value | None]] = {
-    NumberType: _as_number,
-    PointType: lambda it, value, kind, node, env: as_point(it, value, node, env),
-    BoxType: lambda it, value, kind, node, env: box_of(value, env.here),
-    ListType: _as_list,
-}
-"""Conversions of an argument to the kind of value of its parameter; other kinds stay as they are."""
+    """Returns an argument as the kind of value that its parameter asks for; other kinds stay as they are."""
+    match kind:
+        case NumberType(dimension=dimension) if isinstance(value, Num):
+            same = value.dimension == dimension
+            return value if same else Num(value.expression, dimension, value.status)
+        case NumberType() if isinstance(value, Geometry):
+            return edge_coordinate(it, value, node, env)
+        case PointType():
+            return as_point(it, value, node, env)
+        case BoxType():
+            return box_of(value, env.here)
+        case ListType(element=PointType()) if (items := members(value)) is not None:
+            points = [as_point(it, item, node, env) if isinstance(item, ListVal) else item for item in items]
+            return ListVal(tuple(p for p in points if p is not None))
+        case ListType() if isinstance(value, Array | RangeVal):
+            held = items_of(it, value, node)
+            return ListVal(tuple(held)) if held is not None else None
+        case _:
+            return value
 
 
 def invoke(
