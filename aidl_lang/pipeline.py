@@ -29,9 +29,8 @@ from aidl_lang.typecheck import check as typecheck
 if TYPE_CHECKING:
     from aidl_lang.building.expression import Evaluator
     from aidl_lang.building.lower import Lowered
-    from aidl_lang.explaining.failures import Explanation
+    from aidl_lang.explaining.failures import Explanation, Rereading
     from aidl_lang.explaining.giving import GaveWay
-    from aidl_lang.explaining.rereading import Rereading
     from aidl_lang.explaining.trials import Trials
     from aidl_lang.geometry.drawing import Drawing, Findings
     from aidl_lang.geometry.solved import SolvedModel
@@ -318,7 +317,7 @@ class _Finish:
         with self.watch("solve"):
             self.solution = solve(self.lowered.problem, self.settings.solving, memory)
             if _is_troubled(self.solution):
-                from aidl_lang.explaining.rereading import reread
+                from aidl_lang.explaining.failures import reread
 
                 build, solving = self.tries.built, self.settings.solving
                 self.other, self.solution = reread(self.built, self.lowered, self.solution, build, solving)
@@ -362,7 +361,7 @@ class _Finish:
         """Returns notes on what holds only far from the first guesses."""
         if self.other is None and not _is_troubled(self.solution):
             return []
-        from aidl_lang.explaining.rereading import elsewhere_notes
+        from aidl_lang.explaining.failures import elsewhere_notes
 
         model, lowered = self.built.model, self.lowered
         return list(elsewhere_notes(model, lowered, self.solution, self.other, trials))

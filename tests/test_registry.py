@@ -29,9 +29,8 @@ from aidl_lang.building.curves import clockwise, number, view, xy
 def pieces(g, here):
     core = view(g, here)
     start, end, (rise, turn) = xy(core["start"]), xy(core["end"]), (number(core[n]) for n in ("rise", "turn"))
-    up = ex.add(turn, ex.constant(-90.0 if clockwise(g, here) else 90.0))
-    way = ex.mul(rise, ex.cos(up)), ex.mul(rise, ex.sin(up))
-    first, second = (tuple(map(ex.add, p, way)) for p in (start, end))
+    way = rise * ex.towards(turn + (-90.0 if clockwise(g, here) else 90.0))
+    first, second = start + way, end + way
     return ((start, first), (first, second, second, end))
 
 curves.FORMULAS["bow"] = curves.Formulas(pieces=pieces)

@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Sequence
 from functools import cached_property
-from itertools import pairwise
+from itertools import accumulate, pairwise
 
 from aidl_lang.building import expression as ex
 from aidl_lang.building.curves import (
-    Place,
+    NOWHERE,
     clockwise,
     direction,
     distance,
@@ -20,7 +20,7 @@ from aidl_lang.building.curves import (
     view,
     xy,
 )
-from aidl_lang.building.expression import Expression
+from aidl_lang.building.expression import Expression, Place
 from aidl_lang.building.model import Geometry, Structure
 from aidl_lang.common.records import record
 
@@ -31,17 +31,14 @@ from aidl_lang.common.records import record
 # to where these come to lie: exact as long as the curve keeps its form, in whatever size and place, and very
 # near where it bends. What is left is looked at once everything is solved.
 
-_NODES = (4, 6, 8, 12, 16)
-"""The terms of a length: as few as do."""
+_NODES = (4, 6, 8, 12, 16)  # the terms of a length: as few as do
 _EXACT = 1e-10
 _DEEPEST = 10
 _STEPS = 60
 _FOLLOWING = 3
 _NEAR = 1e-15
 _STALLED = 1e-6
-_THREE, _SIX = ex.constant(3.0), ex.constant(6.0)
-_QUARTER = 4
-"""Cubics to a quarter of an ellipse, which are off by 7e-8 of its radius."""
+_QUARTER = 4  # cubics to a quarter of an ellipse, which are off by 7e-8 of its radius
 
 
 Met = tuple[Place, list[Expression]]
@@ -73,10 +70,6 @@ class Cubic:
         return self.points[3]
 
     @property
-    def end(self) -> tuple[float, float]:
-        return _value(self.last)
-
-    @property
     def turned_round(self) -> Cubic:
         a, b, c, d = self.points
         return Cubic((d, c, b, a))
@@ -85,7 +78,7 @@ class Cubic:
     def _ways(self) -> tuple[Place, Place, Place]:
         """A third of the derivative at the control points of its own."""
         a, b, c, d = self.points
-        return way(a, b), way(b, c), way(c, d)
+        return b - a, c - b, d - c
 
     @cached_property
     def _spans(self) -> tuple[_Span, ...]:
@@ -94,7 +87,7 @@ class Cubic:
         before = ex.ZERO
         for t0, t1, nodes in self._divided(0.0, 1.0, 0):
             found.append(_Span(t0, t1, nodes, before))
-            before = ex.add(before, self._between(t0, ex.constant(t1 - t0), nodes))
+            before = before + self._between(t0, ex.constant(t1 - t0), nodes)
         return (*found, _Span(1.0, 1.0, 0, before))
 
     def _divided(self, t0: float, t1: float, depth: int) -> Iterator[tuple[float, float, int]]:
@@ -117,7 +110,7 @@ class Cubic:
 
     @cached_property
     def _guesses(self) -> tuple[tuple[float, float], ...]:
-        return tuple((x.value, y.value) for x, y in self._ways)
+        return tuple(way.written for way in self._ways)
 
     @property
     def length(self) -> Expression:
@@ -127,13 +120,13 @@ class Cubic:
         """Returns the parameter at a length from the start, and the length that is missing there."""
         span = self._spans[sum(s.before.value <= way.value for s in self._spans[1:-1])]
         first = self._reached(span, way.value - span.before.value)
-        to_first = ex.add(span.before, self._between(span.t0, ex.constant(first - span.t0), span.nodes))
-        missing, start = ex.sub(way, to_first), ex.constant(first)
+        to_first = span.before + self._between(span.t0, ex.constant(first - span.t0), span.nodes)
+        missing, start = way - to_first, ex.constant(first)
         step, rest = ex.ZERO, missing
         for _ in range(_FOLLOWING):
-            step = ex.add(step, ex.div(rest, self._speed(ex.add(start, step))))
-            rest = ex.sub(missing, self._between(first, step, _NODES[0]))
-        return ex.add(start, step), rest
+            step = step + rest / self._speed(start + step)
+            rest = missing - self._between(first, step, _NODES[0])
+        return start + step, rest
 
     def _reached(self, span: _Span, way: float) -> float:
         """Returns the parameter at a length from the start of a span on at the first guesses."""
@@ -157,30 +150,23 @@ class Cubic:
 
     def _between(self, t0: float, step: Expression, nodes: int) -> Expression:
         """Returns the length from a parameter on, over a step."""
-        total = ex.ZERO
-        for u, w in gauss(nodes):
-            t = ex.add(ex.constant(t0), ex.mul(ex.constant(u), step))
-            total = ex.add(total, ex.mul(ex.constant(w), self._speed(t)))
-        return ex.mul(total, step)
+        speeds = (w * self._speed(t0 + u * step) for u, w in gauss(nodes))
+        return sum(speeds, ex.ZERO) * step
 
     def _speed(self, t: Expression) -> Expression:
-        x, y = self._derivative(t)
-        return ex.mul(_THREE, ex.apply("hypot", x, y))
-
-    def _velocity(self, t: Expression) -> Place:
-        x, y = self._derivative(t)
-        return ex.mul(_THREE, x), ex.mul(_THREE, y)
+        return 3.0 * self._derivative(t).length
 
     def _derivative(self, t: Expression) -> Place:
-        s = ex.sub(ex.ONE, t)
-        return _weighed(self._ways, (ex.mul(s, s), ex.mul(ex.constant(2.0), ex.mul(s, t)), ex.mul(t, t)))
+        """Returns a third of it."""
+        s = 1.0 - t
+        return _weighed(self._ways, (s * s, 2.0 * (s * t), t * t))
 
     def crossings(self, axis: int, at: Expression) -> Iterator[Met]:
         """Yields the places that have an x (`axis` 0) or a y."""
         import numpy as np
 
-        def off(t: Expression) -> Place:
-            return ex.sub(at, self.at(t)[0][axis]), self._velocity(t)[axis]
+        def off(t: Expression) -> tuple[Expression, Expression]:
+            return at - self.at(t)[0][axis], 3.0 * self._derivative(t)[axis]
 
         a, b, c, d = (p[axis].value for p in self.points)
         for root in np.roots((d - 3 * c + 3 * b - a, 3 * (c - 2 * b + a), 3 * (b - a), a - at.value)):
@@ -195,21 +181,21 @@ class Cubic:
         """Returns the way up to the place nearest to a point, the place, and what is 0 as long as it is."""
         least = ex.constant(_STALLED**2 * self.length.value)  # where handles lie on an end, it stands still
 
-        def off(t: Expression) -> Place:
-            (x, y), (u, v) = way(self.at(t)[0], p), self._velocity(t)
+        def off(t: Expression) -> tuple[Expression, Expression]:
+            (x, y), (u, v) = p - self.at(t)[0], 3.0 * self._derivative(t)
             speed = ex.apply("maximum", self._speed(t), least)
-            bend = (way(*pair) for pair in pairwise(self._ways))
-            k, j = _weighed(tuple(bend), (ex.mul(_SIX, ex.sub(ex.ONE, t)), ex.mul(_SIX, t)))
-            turning = ex.div(ex.add(ex.mul(x, k), ex.mul(y, j)), speed)
-            return ex.div(ex.add(ex.mul(x, u), ex.mul(y, v)), speed), ex.sub(speed, turning)
+            bends = [b - a for a, b in pairwise(self._ways)]
+            k, j = _weighed(bends, (6.0 * (1.0 - t), 6.0 * t))
+            turning = (x * k + y * j) / speed
+            return (x * u + y * v) / speed, speed - turning
 
         shares = (k / _STEPS for k in range(_STEPS + 1))
-        first = min(shares, key=lambda t: math.dist(_value(self.at(ex.constant(t))[0]), _value(p)))
+        first = min(shares, key=lambda t: math.dist(self.at(ex.constant(t))[0].written, p.written))
         first = min(max(self._solved(self._moving(first), off)[0].value, 0.0), 1.0)
         t, rest = self._solved(self._moving(first), off)
         t = _within(t, ex.ONE)
         span = self._spans[sum(s.t0 <= first for s in self._spans[1:-1])]
-        own = ex.add(span.before, self._between(span.t0, ex.sub(t, ex.constant(span.t0)), span.nodes))
+        own = span.before + self._between(span.t0, t - span.t0, span.nodes)
         return own, self.at(t)[0], rest
 
     def _solved(
@@ -220,20 +206,16 @@ class Cubic:
         """
         t = ex.constant(first)
         for _ in range(2 * _FOLLOWING):  # the point may come from further off
-            t = ex.add(t, ex.div(*off(t)))
+            rest, fall = off(t)
+            t = t + rest / fall
         return t, off(t)[0]
 
     def at(self, t: Expression) -> tuple[Place, Expression]:
         """Returns the place and the direction at a parameter."""
-        s = ex.sub(ex.ONE, t)
-        s2, t2 = ex.mul(s, s), ex.mul(t, t)
-        weights = ex.mul(s2, s), ex.mul(_THREE, ex.mul(s2, t)), ex.mul(_THREE, ex.mul(s, t2)), ex.mul(t2, t)
-        x, y = self._derivative(t)
-        return _weighed(self.points, weights), ex.atan2(y, x)
-
-
-def way(a: Place, b: Place) -> Place:
-    return ex.sub(b[0], a[0]), ex.sub(b[1], a[1])
+        s = 1.0 - t
+        s2, t2 = s * s, t * t
+        weights = s2 * s, 3.0 * (s2 * t), 3.0 * (s * t2), t2 * t
+        return _weighed(self.points, weights), self._derivative(t).direction
 
 
 def _within(own: Expression, whole: Expression) -> Expression:
@@ -242,14 +224,11 @@ def _within(own: Expression, whole: Expression) -> Expression:
 
 def _beyond(own: Expression, whole: Expression) -> list[Expression]:
     """Returns by how much a way is before its start and behind its end."""
-    return [ex.apply("maximum", ex.ZERO, over) for over in (ex.apply("neg", own), ex.sub(own, whole))]
+    return [ex.apply("maximum", ex.ZERO, over) for over in (-own, own - whole)]
 
 
 def _weighed(points: Sequence[Place], weights: Sequence[Expression]) -> Place:
-    x = y = ex.ZERO
-    for p, w in zip(points, weights, strict=True):
-        x, y = ex.add(x, ex.mul(w, p[0])), ex.add(y, ex.mul(w, p[1]))
-    return x, y
+    return sum((w * p for p, w in zip(points, weights, strict=True)), NOWHERE)
 
 
 def of_ellipse(
@@ -259,11 +238,10 @@ def of_ellipse(
     count = 4 * _QUARTER
     turn = math.tau / count * (-1 if clockwise else 1)
     handle = 4 / 3 * math.tan(turn / 4)
-    cos, sin = ex.cos(angle), ex.sin(angle)
+    facing = ex.towards(angle)
 
     def place(u: float, v: float) -> Place:
-        x, y = ex.turned(cos, sin, ex.mul(ex.constant(u), rx), ex.mul(ex.constant(v), ry))
-        return ex.add(center[0], x), ex.add(center[1], y)
+        return center + Place(u * rx, v * ry).turned(facing)
 
     found = []
     for k in range(count):
@@ -279,14 +257,11 @@ KINDS = frozenset({"line", "arc", "circle"})
 FREE_KINDS = frozenset({"bezier", "ellipse"})
 """Curves that are walked as cubics."""
 
-_SMOOTH = 1e-4
-"""Degrees by which what goes on without a corner may turn."""
-_BESIDE = 0.125
-"""Share of a stretch from its ends where a place may come to lie on the one beside it."""
+_SMOOTH = 1e-4  # degrees by which what goes on without a corner may turn
+_BESIDE = 0.125  # share of a stretch from its ends where a place may come to lie on the one beside it
 _DEGREES = ex.constant(180.0 / math.pi)
 _RADIANS = ex.constant(math.pi / 180.0)
-_MEETS = 1e-6
-"""Distance of two ends that are one, relative to the extent of the curves or in mm."""
+_MEETS = 1e-6  # distance of two ends that are one, relative to the extent of the curves or in mm
 
 
 @record(eq=False)
@@ -305,35 +280,30 @@ class Stretch:
     bow: Expression = ex.ZERO
 
     def at(self, way: Expression) -> Place:
-        x, y = self.start
         if self.center is None:
-            cos, sin = ex.cos(self.heading), ex.sin(self.heading)
-            return ex.add(x, ex.mul(way, cos)), ex.add(y, ex.mul(way, sin))
-        turn = ex.mul(self.bow, way)
-        out = ex.sub(x, self.center[0]), ex.sub(y, self.center[1])
-        u, v = ex.turned(ex.cos(turn), ex.sin(turn), *out)
-        return ex.add(self.center[0], u), ex.add(self.center[1], v)
+            return self.start + way * ex.towards(self.heading)
+        return self.center + (self.start - self.center).turned(ex.towards(self.bow * way))
 
     def crossings(self, axis: int, at: Expression) -> Iterator[Met]:
         """Yields the places that have an x (`axis` 0) or a y."""
         others: list[Expression] = []
-        run, off = way(self.start, self.last), ex.sub(at, self.start[axis])
+        run, off = self.last - self.start, at - self.start[axis]
         is_along = self.center is None and abs(run[axis].value) <= _STALLED * self.length.value
         if is_along and abs(off.value) <= _MEETS:
             others = [self.start[1 - axis], self.last[1 - axis]]
         elif self.center is None and not is_along:
-            others = [ex.add(self.start[1 - axis], ex.mul(ex.div(off, run[axis]), run[1 - axis]))]
+            others = [self.start[1 - axis] + off / run[axis] * run[1 - axis]]
         elif self.center is not None:
-            radius, off = ex.apply("hypot", *way(self.center, self.start)), ex.sub(at, self.center[axis])
-            square = ex.sub(ex.apply("square", radius), ex.apply("square", off))
+            radius, off = (self.start - self.center).length, at - self.center[axis]
+            square = ex.apply("square", radius) - ex.apply("square", off)
             if square.value >= 0:
                 reach = ex.apply("sqrt", ex.apply("maximum", ex.ZERO, square))
-                others = [join(self.center[1 - axis], reach) for join in (ex.add, ex.sub)]
+                others = [self.center[1 - axis] + reach, self.center[1 - axis] - reach]
         for other in others:
-            place = (at, other) if axis == 0 else (other, at)
+            place = Place(at, other) if axis == 0 else Place(other, at)
             unmet = _beyond(self._beside(place), self.length) + [off] * is_along
             if self.center is not None:
-                unmet.append(ex.sub(ex.apply("hypot", *way(self.center, place)), radius))
+                unmet.append((place - self.center).length - radius)
             if all(abs(e.value) <= _MEETS for e in unmet):
                 yield place, unmet
 
@@ -345,32 +315,27 @@ class Stretch:
     def _beside(self, p: Place) -> Expression:
         """Returns the length up to the place nearest to a point, on the whole line or circle."""
         if self.center is None:
-            x, y = way(self.start, p)
-            return ex.add(ex.mul(x, ex.cos(self.heading)), ex.mul(y, ex.sin(self.heading)))
-        (u, v), (x, y) = way(self.center, self.start), way(self.center, p)
+            (x, y), (cos, sin) = p - self.start, ex.towards(self.heading)
+            return x * cos + y * sin
         sense = ex.constant(math.copysign(1.0, self.bow.value))
-        turn = ex.mul(sense, ex.sub(ex.atan2(y, x), ex.atan2(v, u)))
-        whole, swept = ex.constant(360.0), ex.mul(sense, ex.mul(self.bow, self.length))
-        left = ex.half(ex.sub(whole, swept))  # beside the arc, the nearer of its ends is meant
-        turn = ex.sub(ex.apply("mod", ex.add(turn, left), whole), left)
-        return ex.div(turn, ex.mul(sense, self.bow))
+        turn = sense * ((p - self.center).direction - (self.start - self.center).direction)
+        whole, swept = ex.constant(360.0), sense * (self.bow * self.length)
+        left = (whole - swept) * 0.5  # beside the arc, the nearer of its ends is meant
+        turn = ex.apply("mod", turn + left, whole) - left
+        return turn / (sense * self.bow)
 
     def direction(self, way: Expression) -> Expression:
-        return ex.add(self.heading, ex.mul(self.bow, way))
+        return self.heading + self.bow * way
 
     @property
     def turned_round(self) -> Stretch:
         """The same curve, walked from its end."""
-        heading = ex.add(self.direction(self.length), ex.constant(180.0))
-        return Stretch(self.at(self.length), heading, self.length, self.center, ex.apply("neg", self.bow))
+        heading = self.direction(self.length) + 180.0
+        return Stretch(self.at(self.length), heading, self.length, self.center, -self.bow)
 
     @property
     def last(self) -> Place:
         return self.at(self.length)
-
-    @property
-    def end(self) -> tuple[float, float]:
-        return _value(self.last)
 
 
 @record(eq=False)
@@ -387,10 +352,7 @@ class Way:
     @cached_property
     def _lengths(self) -> tuple[Expression, ...]:
         """The lengths from the start up to each of the joints, and to the end."""
-        found = [ex.ZERO]
-        for stretch in self.stretches:
-            found.append(ex.add(found[-1], stretch.length))
-        return tuple(found)
+        return tuple(accumulate((stretch.length for stretch in self.stretches), initial=ex.ZERO))
 
     @property
     def is_free(self) -> bool:
@@ -403,17 +365,17 @@ class Way:
         """
         index = sum(low.value <= way.value for low in self._lengths[1:-1])
         whole = self.stretches[index].length
-        own = ex.sub(way, self._lengths[index])
+        own = way - self._lengths[index]
         before = index > 0 and own.value < _BESIDE * whole.value
         after = index < len(self.stretches) - 1 and whole.value - own.value < _BESIDE * whole.value
-        (x, y), heading, unmet = self._on(index, own, at_least=before, at_most=after)
+        place, heading, unmet = self._on(index, own, at_least=before, at_most=after)
         for k in [index - 1] * before + [index + 1] * after:
-            reached = ex.sub(way, self._lengths[k])
-            (u, v), _, more = self._on(k, reached, at_least=k > index, at_most=k < index)
+            reached = way - self._lengths[k]
+            met, _, more = self._on(k, reached, at_least=k > index, at_most=k < index)
             joint = self.stretches[k].start if k > index else self.stretches[k].last
-            x, y = ex.add(x, ex.sub(u, joint[0])), ex.add(y, ex.sub(v, joint[1]))
+            place = place + (met - joint)
             unmet += more
-        return (x, y), heading, unmet
+        return place, heading, unmet
 
     def _on(
         self, index: int, own: Expression, *, at_least: bool = False, at_most: bool = False
@@ -432,15 +394,15 @@ class Way:
         t, rest = stretch.parameter(own)
         return *stretch.at(t), [*unmet, rest]
 
-    def up_to(self, p: Place) -> Place:
+    def up_to(self, p: Place) -> tuple[Expression, Expression]:
         """Returns the way up to the place nearest to a point, and what is 0 as long as it is that."""
         feet = []
         for before, stretch in zip(self._lengths, self.stretches, strict=False):
             own, place, rest = stretch.foot(p)
-            feet.append((ex.apply("hypot", *way(place, p)), ex.add(before, own), rest))
+            feet.append(((p - place).length, before + own, rest))
         nearest, *found = feet[0]
         for away, *other in feet[1:]:
-            nearer = ex.sub(nearest, away)
+            nearer = nearest - away
             found = [ex.apply("select", nearer, *pair) for pair in zip(other, found, strict=True)]
             nearest = ex.apply("minimum", nearest, away)
         return found[0], found[1]
@@ -450,7 +412,7 @@ class Way:
         the stretch on which it lies at the first guesses. Beyond its ends the way runs on as they do.
         """
         stretches = [s for s in self.stretches if isinstance(s, Stretch)]
-        x, y = stretches[0].start
+        place = stretches[0].start
         rest, heading = way, stretches[0].heading
         for index, stretch in enumerate(stretches):
             is_last = index == len(stretches) - 1
@@ -461,10 +423,9 @@ class Way:
                 own = ex.apply("minimum", own, stretch.length)
             if index == 0 or (rest.value >= -_MEETS and (is_last or rest.value > _MEETS)):
                 heading = stretch.direction(own)
-            to, start = stretch.at(own), stretch.start
-            x, y = ex.add(x, ex.sub(to[0], start[0])), ex.add(y, ex.sub(to[1], start[1]))
-            rest = ex.sub(rest, stretch.length)
-        return (x, y), heading
+            place = place + (stretch.at(own) - stretch.start)
+            rest = rest - stretch.length
+        return place, heading
 
 
 def within(way: Way, margin: Expression) -> tuple[Way, list[Expression], list[Expression]] | None:
@@ -473,11 +434,11 @@ def within(way: Way, margin: Expression) -> tuple[Way, list[Expression], list[Ex
     None where an arc meets something at an angle, and for free curves.
     """
     whole = [s for s in way.stretches if isinstance(s, Stretch)]
-    rim = [_value(s.at(ex.mul(s.length, ex.constant(k / 3)))) for s in whole for k in range(3)]
+    rim = [s.at(s.length * (k / 3)).written for s in whole for k in range(3)]
     area = sum(a * d - b * c for (a, b), (c, d) in pairwise([*rim, rim[0]]))
-    aside = ex.mul(ex.constant(math.copysign(1.0, area)), margin)  # to the left
-    bows = [ex.mul(_RADIANS, s.bow) for s in whole]
-    shares = [ex.sub(ex.ONE, ex.mul(aside, bow)) for bow in bows]
+    aside = math.copysign(1.0, area) * margin  # to the left
+    bows = [_RADIANS * s.bow for s in whole]
+    shares = [1.0 - aside * bow for bow in bows]
     kept = [i for i, share in enumerate(shares) if share.value > 1e-9]
     if len(whole) < len(way.stretches) or not kept:
         return None
@@ -493,30 +454,29 @@ def within(way: Way, margin: Expression) -> tuple[Way, list[Expression], list[Ex
             continue
         if len(lost) > 1 or (lost and not is_smooth) or whole[i].center or whole[before].center:
             return None
-        reach = ex.sub(aside, ex.div(ex.ONE, bows[lost[0]])) if lost else aside
-        cuts[i] = ex.mul(reach, ex.div(ex.sin(ex.half(turn)), ex.cos(ex.half(turn))))
+        reach = aside - 1.0 / bows[lost[0]] if lost else aside
+        cuts[i] = reach * (ex.sin(turn * 0.5) / ex.cos(turn * 0.5))
         unmet += [ex.apply("maximum", ex.ZERO, shares[k]) for k in lost]
     made: list[Stretch] = []
     corners, at = [], ex.ZERO
     for i, after in zip(kept, [*kept[1:], kept[0]], strict=True):
         s, cut = whole[i], cuts.get(i, ex.ZERO)
-        length = ex.sub(ex.mul(s.length, shares[i]), ex.add(cut, cuts.get(after, ex.ZERO)))
-        cos, sin = ex.cos(s.heading), ex.sin(s.heading)
-        x = ex.add(s.start[0], ex.sub(ex.mul(cut, cos), ex.mul(aside, sin)))
-        y = ex.add(s.start[1], ex.add(ex.mul(cut, sin), ex.mul(aside, cos)))
+        length = s.length * shares[i] - (cut + cuts.get(after, ex.ZERO))
+        cos, sin = ex.towards(s.heading)
+        start = s.start + Place(cut * cos - aside * sin, cut * sin + aside * cos)
         is_round = s.center is not None and len(kept) > 2 and not whole[kept[kept.index(i) - 1]].center
         if i in cuts or (is_round and not whole[after].center):
-            corners.append(ex.add(at, ex.half(length)) if is_round else at)
-        made.append(Stretch((x, y), s.heading, length, s.center, ex.div(s.bow, shares[i])))
-        unmet.append(ex.apply("maximum", ex.ZERO, ex.apply("neg", length)))
-        at = ex.add(at, length)
+            corners.append(at + length * 0.5 if is_round else at)
+        made.append(Stretch(start, s.heading, length, s.center, s.bow / shares[i]))
+        unmet.append(ex.apply("maximum", ex.ZERO, -length))
+        at = at + length
     return Way(tuple(made), is_closed=True), corners, unmet
 
 
 def _turn(before: Expression, after: Expression) -> Expression:
     """Returns the angle from one direction to another, between -180 and 180 degrees at the first guesses."""
-    turn = ex.sub(after, before)
-    return ex.sub(turn, ex.constant(360.0 * round(turn.value / 360.0)))
+    turn = after - before
+    return turn - 360.0 * round(turn.value / 360.0)
 
 
 def way_along(curves: Sequence[Geometry], here: Structure) -> Way | None:
@@ -528,7 +488,9 @@ def way_along(curves: Sequence[Geometry], here: Structure) -> Way | None:
     both = [pair for c in curves for pair in _stretches(c, here)]
     if not both:
         return None
-    near = _MEETS * max(1.0, *(abs(v) for pair in both for v in (*_value(pair[0].start), *pair[0].end)))
+    near = _MEETS * max(
+        1.0, *(abs(v) for pair in both for v in (*pair[0].start.written, *pair[0].last.written))
+    )
     first, *rest = both
     walked = _walked(first[0], rest, near)
     if rest:  # the first lies in the middle
@@ -536,7 +498,7 @@ def way_along(curves: Sequence[Geometry], here: Structure) -> Way | None:
         walked = [*(turned[s] for s in reversed(_walked(first[1], rest, near)[1:])), *walked]
     if rest:
         return None
-    meets = math.dist(walked[-1].end, _value(walked[0].start)) <= near
+    meets = math.dist(walked[-1].last.written, walked[0].start.written) <= near
     return Way(tuple(walked), meets and (len(walked) > 1 or isinstance(walked[0], Cubic)))
 
 
@@ -570,9 +532,8 @@ def _walked(stretch: Stretch | Cubic, rest: list[_Pair], near: float) -> list[St
     """Returns a stretch and those that go on from it, which are taken out of the rest."""
     walked = [stretch]
     while True:
-        ways = (
-            (pair, s) for pair in rest for s in pair if math.dist(_value(s.start), walked[-1].end) <= near
-        )
+        end = walked[-1].last.written
+        ways = ((pair, s) for pair in rest for s in pair if math.dist(s.start.written, end) <= near)
         if (found := next(ways, None)) is None:
             return walked
         rest.remove(found[0])
@@ -582,12 +543,13 @@ def _walked(stretch: Stretch | Cubic, rest: list[_Pair], near: float) -> list[St
 def _circle(curve: Geometry, here: Structure, *, inside: bool | None = None) -> Stretch:
     """Returns a circle from its right on in its own sense, or as one writes in or outside of it."""
     core = view(curve, here)
-    (x, y), radius = xy(core["center"]), number(core["radius"])
+    center, radius = xy(core["center"]), number(core["radius"])
     turn = ex.constant(1.0 if inside or (inside is None and not clockwise(curve, here)) else -1.0)
-    length, bend = ex.mul(ex.constant(2 * math.pi), radius), ex.div(ex.mul(turn, _DEGREES), radius)
+    length, bend = 2 * math.pi * radius, turn * _DEGREES / radius
     if inside is not None:
-        return Stretch((x, ex.add(y, ex.mul(turn, radius))), ex.constant(180.0), length, (x, y), bend)
-    return Stretch((ex.add(x, radius), y), ex.mul(turn, ex.constant(90.0)), length, (x, y), bend)
+        start = Place(center.x, center.y + turn * radius)
+        return Stretch(start, ex.constant(180.0), length, center, bend)
+    return Stretch(Place(center.x + radius, center.y), turn * 90.0, length, center, bend)
 
 
 def _stretch(curve: Geometry, here: Structure, *, reverse: bool = False) -> Stretch:
@@ -598,9 +560,9 @@ def _stretch(curve: Geometry, here: Structure, *, reverse: bool = False) -> Stre
     is_clockwise = clockwise(curve, here)
     radius = distance(core["center"], core["start"])
     turn = ex.constant(-1.0 if is_clockwise != reverse else 1.0)
-    ahead = ex.add(direction(core["center"], start), ex.mul(turn, ex.constant(90.0)))
-    length, bend = ex.mul(ex.mul(_RADIANS, sweep(core, is_clockwise)), radius), ex.mul(turn, _DEGREES)
-    return Stretch(xy(start), ahead, length, xy(core["center"]), ex.div(bend, radius))
+    ahead = direction(core["center"], start) + turn * 90.0
+    length, bend = _RADIANS * sweep(core, is_clockwise) * radius, turn * _DEGREES
+    return Stretch(xy(start), ahead, length, xy(core["center"]), bend / radius)
 
 
 def reading_way(curves: Sequence[Geometry], here: Structure, *, inside: bool | None) -> Way | None:
@@ -617,10 +579,6 @@ def reading_way(curves: Sequence[Geometry], here: Structure, *, inside: bool | N
     if len(curves) == 1 and curves[0].type == "arc" and inside is not None:
         backwards = clockwise(curves[0], here) == inside
     else:
-        ahead = way.at(ex.mul(way.length, ex.constant(0.5)))[1].value
+        ahead = way.at(way.length * 0.5)[1].value
         backwards = (-90.0 < (ahead + 180.0 - 1e-9) % 360.0 - 180.0 <= 90.0) == (inside is True)
     return Way(tuple(s.turned_round for s in reversed(way.stretches)), is_closed=False) if backwards else way
-
-
-def _value(place: Place) -> tuple[float, float]:
-    return place[0].value, place[1].value

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from graphlib import CycleError, TopologicalSorter
+from typing import TypeAlias
 
 from aidl_lang.building.coerce import constant
 from aidl_lang.building.evaluate import evaluate
 from aidl_lang.building.functions import color_of
-from aidl_lang.building.model import Geometry, Structure
+from aidl_lang.building.model import Geometry, Holder, Structure
 from aidl_lang.building.state import Env, Interpreter, Reach, Scope
-from aidl_lang.building.values import Nothing, Num, TextVal, Value, each_of, holds, kind_of
+from aidl_lang.building.values import Nothing, Num, TextVal, Value, certain, each_of, holds, kind_of
 from aidl_lang.checking import units
 from aidl_lang.checking.builtins import ATTRIBUTES, BEHIND, CLIP, IN_FRONT, NAMING, STACKING, WORDED
 from aidl_lang.common.colors import css_color
@@ -24,9 +25,10 @@ from aidl_lang.syntax import ast
 
 
 @record()
-class StatedClip:
-    """A `@clip`, and the scope in which it is read: that of its structure, or of what makes the copy."""
+class Stated:
+    """An attribute that names things, its own name, and the scope in which it is read."""
 
+    name: str
     attribute: ast.Attribute
     scope: Scope
 
@@ -38,7 +40,7 @@ def settle_clips_in(it: Interpreter, parent: Structure) -> None:
             _settle(it, s, stated)
 
 
-def _names_own(stated: StatedClip, parent: Structure) -> bool:
+def _names_own(stated: Stated, parent: Structure) -> bool:
     """Tells whether a clip names geometry that stands in a structure itself, or the structure."""
     values = [argument.value for argument in stated.attribute.arguments]
     if len(values) != 1 or not isinstance(name := values[0], ast.Name):
@@ -56,7 +58,7 @@ def settle_clips(it: Interpreter) -> None:
             _settle(it, s, stated)
 
 
-def _settle(it: Interpreter, s: Structure, stated: StatedClip) -> None:
+def _settle(it: Interpreter, s: Structure, stated: Stated) -> None:
     env = Env(stated.scope, s.parent or s, Reach.READ)
     values = [evaluate(it, argument.value, env) for argument in stated.attribute.arguments]
     if any(isinstance(value, Nothing) for value in values):
@@ -79,7 +81,7 @@ def _outlines(solid: Structure, clipped: Structure) -> Iterator[Geometry]:
                 yield g
 
 
-def _outline(it: Interpreter, s: Structure, clip: StatedClip, values: Sequence[Value]) -> Iterator[Geometry]:
+def _outline(it: Interpreter, s: Structure, clip: Stated, values: Sequence[Value]) -> Iterator[Geometry]:
     """Yields the geometry that `@clip` names; reports what is no outline."""
     attribute = clip.attribute
     found = list(each_of(values[0], Geometry)) if len(values) == 1 else []
@@ -107,16 +109,7 @@ def _outline(it: Interpreter, s: Structure, clip: StatedClip, values: Sequence[V
 # there.
 
 
-@record()
-class StatedOrder:
-    """An attribute of order, its name, and the scope in which it is read."""
-
-    name: str
-    attribute: ast.Attribute
-    scope: Scope
-
-
-def state_order(it: Interpreter, s: Structure, stated: StatedOrder) -> None:
+def state_order(it: Interpreter, s: Structure, stated: Stated) -> None:
     """Keeps what is said of the order of a structure until all beside it are there."""
     if s.parent is None:
         message = f"`{s.name}` is the whole drawing: nothing is beside it"
@@ -126,29 +119,27 @@ def state_order(it: Interpreter, s: Structure, stated: StatedOrder) -> None:
         it.orders.setdefault(s, []).append(stated)
 
 
+Stacking: TypeAlias = dict[Structure, dict[Structure, ast.Attribute]]
+"""Structures, those in front of each, and the attribute that says so."""
+
+
 def settle_order(it: Interpreter, parent: Structure) -> None:
     """Gives the structures in one that was run the names of those that they are behind or in front of."""
-    stated: dict[Structure, dict[Structure, ast.Attribute]] = {}
+    stated: Stacking = {}
     for s in parent.children:
         if s.source is not None:
-            _take_over(it, s, s.source, parent, stated)
+            _take_over(it, s, s.source, stated)
         if s in it.orders:
-            _read_order(it, s, parent, it.orders[s], stated)
+            _read_order(it, s, stated)
     if cycle := _cycle(stated):
         _report_cycle(it, cycle, stated)
 
 
-def _read_order(
-    it: Interpreter,
-    s: Structure,
-    parent: Structure,
-    orders: list[StatedOrder],
-    stated: dict[Structure, dict[Structure, ast.Attribute]],
-) -> None:
+def _read_order(it: Interpreter, s: Structure, stated: Stacking) -> None:
     names: dict[str, list[str]] = {}
-    for order in orders:
-        attribute = order.attribute
-        values = [evaluate(it, a.value, Env(order.scope, parent, Reach.READ)) for a in attribute.arguments]
+    for order in it.orders[s]:
+        attribute, env = order.attribute, Env(order.scope, s.parent or s, Reach.READ)
+        values = [evaluate(it, a.value, env) for a in attribute.arguments]
         if any(isinstance(value, Nothing) for value in values):
             continue
         others = [list(each_of(value, Structure)) for value in values]
@@ -157,8 +148,8 @@ def _read_order(
             it.report("E0517", f"`@{attribute.name.text}` {taken}", attribute)
             continue
         for other in (o for group in others for o in group if o is not s or len(group) == 1):
-            if other.parent is not parent or other is s:
-                _cannot_lie(it, s, other, parent, order)
+            if other.parent is not s.parent or other is s:
+                _cannot_lie(it, s, other, order)
                 continue
             names.setdefault(order.name, []).append(other.name)
             back, front = (s, other) if order.name == BEHIND else (other, s)
@@ -167,34 +158,26 @@ def _read_order(
         s.attributes[name] = tuple(map(TextVal, dict.fromkeys(found)))
 
 
-def _cannot_lie(
-    it: Interpreter, s: Structure, other: Structure, parent: Structure, order: StatedOrder
-) -> None:
+def _cannot_lie(it: Interpreter, s: Structure, other: Structure, order: Stated) -> None:
     hints = ["the order is stated between structures that stand side by side in one structure"]
     if other is s:
         why = f"`{s.name}` cannot be {_SIDES[order.name]} itself"
         hints = ["name another structure beside it"]
     elif s.is_within(other):
         why = f"`{s.name}` is a part of `{other.name}`, and parts are drawn on the whole"
+    elif other.is_within(s):
+        why = f"`{other.name}` is a part of `{s.name}`, and parts are drawn on the whole"
     else:
         why = f"`{other.name}` is not beside `{s.name}`"
-        beside = next((c for c in parent.children if other.is_within(c) and c is not s), None)
-        if other.is_within(s):
-            why = f"`{other.name}` is a part of `{s.name}`, and parts are drawn on the whole"
-        elif beside is not None:
+        children = s.parent.children if s.parent is not None else ()
+        if (beside := next((c for c in children if other.is_within(c)), None)) is not None:
             hints = [f"all of `{beside.name}` is drawn together: `@{order.name}({beside.name})`"]
     it.report("E0521", why, order.attribute, hints=hints)
 
 
-def _take_over(
-    it: Interpreter,
-    s: Structure,
-    source: Structure,
-    parent: Structure,
-    stated: dict[Structure, dict[Structure, ast.Attribute]],
-) -> None:
+def _take_over(it: Interpreter, s: Structure, source: Structure, stated: Stacking) -> None:
     """Leaves to a copy what is said of its source, not of itself, and holds beside the copy, too."""
-    beside = {child.name: child for child in parent.children if child is not s}
+    beside = {child.name: child for child in s.parent.children if child is not s} if s.parent else {}
     own = {order.name for order in it.orders.get(s, ())}
     for name in STACKING:
         values = source.attributes.get(name, ()) if name not in own else ()
@@ -203,23 +186,19 @@ def _take_over(
         if not kept:
             continue
         s.attributes[name] = kept
-        attribute = _stated(it, source, name)
+        attribute = _said(it, source, name)
         for value in kept:
             back, front = (s, beside[value.value]) if name == BEHIND else (beside[value.value], s)
             stated.setdefault(back, {})[front] = attribute
 
 
-def _stated(it: Interpreter, s: Structure, name: str) -> ast.Attribute:
-    here: Structure | None = s
-    while here is not None:
-        for order in it.orders.get(here, ()):
-            if order.name == name:
-                return order.attribute
-        here = here.source
-    raise KeyError(name)
+def _said(it: Interpreter, s: Structure, name: str) -> ast.Attribute:
+    """Returns the attribute of a name that was written of a structure, or of what it is a copy of."""
+    said = (order.attribute for order in it.orders.get(s, ()) if order.name == name)
+    return next(said, None) or _said(it, certain(s.source, Structure), name)
 
 
-def _cycle(stated: Mapping[Structure, Mapping[Structure, ast.Attribute]]) -> list[Structure]:
+def _cycle(stated: Stacking) -> list[Structure]:
     """Returns structures each behind the next, and the last behind the first; none if there are none."""
     order: TopologicalSorter[Structure] = TopologicalSorter()
     for back, fronts in stated.items():
@@ -233,9 +212,7 @@ def _cycle(stated: Mapping[Structure, Mapping[Structure, ast.Attribute]]) -> lis
     return []
 
 
-def _report_cycle(
-    it: Interpreter, cycle: list[Structure], stated: Mapping[Structure, Mapping[Structure, ast.Attribute]]
-) -> None:
+def _report_cycle(it: Interpreter, cycle: list[Structure], stated: Stacking) -> None:
     rest = [*cycle[1:], cycle[0]]
     attributes = [stated[back][front] for back, front in zip(cycle, rest, strict=True)]
     chain = ", which is behind ".join(f"`{s.name}`" for s in rest)
@@ -260,38 +237,32 @@ def read_attributes(
     it: Interpreter, s: Structure, attributes: Iterable[ast.Attribute], scope: Scope, body: Scope
 ) -> None:
     """Reads the attributes that the checker has accepted; `@clip` is read in the scope of the body."""
-    for name, values, attribute in _read(it, attributes, Env(scope, s.parent or s, Reach.OWN)):
+    for name, values, attribute in _read(it, attributes, Env(scope, s.parent or s)):
         if name in STACKING:
-            state_order(it, s, StatedOrder(name, attribute, scope))
+            state_order(it, s, Stated(name, attribute, scope))
         elif name == CLIP:
-            it.clips[s] = StatedClip(attribute, body)  # until all geometry is there; of two the later counts
+            it.clips[s] = Stated(
+                CLIP, attribute, body
+            )  # until all geometry is there; of two the later counts
             s.attributes[CLIP] = tuple(TextVal(a.value.span.one_line) for a in attribute.arguments)
         elif _fits(it, name, values, attribute) and _shows(it, name, values, attribute, s):
             s.attributes[name] = tuple(values)
 
 
-def read_own_attributes(
-    it: Interpreter, node: ast.Assign, value: Value, container: Structure | Geometry, scope: Scope
-) -> None:
+def read_own_attributes(it: Interpreter, node: ast.Assign, value: Value, env: Env) -> None:
     """Reads the attributes of a geometry; reports those for structures only."""
-    things = list(each_of(value, Geometry))
-    here = container if isinstance(container, Structure) else container.owner
-    for name, values, attribute in _read(it, node.attributes, Env(scope, here, Reach.OWN)):
-        is_own = here is container and name in OWN_LOOKS.get(here.kind, ())
+    things, here = list(each_of(value, Geometry)), env.here
+    for name, values, attribute in _read(it, node.attributes, env):
+        is_own = here is env.holder and name in OWN_LOOKS.get(here.kind, ())
         if not things or not (name == "note" or is_own):
-            _misplaced(it, node, name, attribute, value, container)
+            _misplaced(it, node, attribute, value, env.holder)
         elif _fits(it, name, values, attribute) and _shows(it, name, values, attribute, here):
             for thing in things:
                 thing.attributes = thing.attributes | {name: tuple(values)}
 
 
 def _misplaced(
-    it: Interpreter,
-    node: ast.Assign,
-    name: str,
-    attribute: ast.Attribute,
-    value: Value,
-    container: Structure | Geometry,
+    it: Interpreter, node: ast.Assign, attribute: ast.Attribute, value: Value, container: Holder
 ) -> None:
     written, thing = attribute.span.one_line, node.name.text
     if not any(each_of(value, Geometry)):
@@ -344,12 +315,7 @@ EDGES = ("seams", "outline")
 SHADES = ("round", "ball", "slope", "fade", "none")
 NO_OUTLINE = TextVal("none")
 """What `@stroke` says of solids and areas without outline; a width of 0 says the same."""
-_WORDS = {
-    "orientation": ORIENTATIONS,
-    "edges": EDGES,
-    "shade": SHADES,
-    "stroke": (NO_OUTLINE.value,),
-}
+_WORDS = {"orientation": ORIENTATIONS, "edges": EDGES, "shade": SHADES, "stroke": (NO_OUTLINE.value,)}
 """The words of attributes."""
 
 

@@ -12,10 +12,10 @@ from functools import cached_property
 
 from aidl_lang.building import curves
 from aidl_lang.building import expression as ex
-from aidl_lang.building.curves import defining, view, xy
-from aidl_lang.building.expression import Expression, Unknown
+from aidl_lang.building.curves import defining, towards, view, xy
+from aidl_lang.building.expression import Expression, Place, Unknown
 from aidl_lang.building.model import Geometry, Measurement, Recipe, Structure, chain, convert
-from aidl_lang.building.values import Num, PointVal, Value, leaves, length, point
+from aidl_lang.building.values import Num, PointVal, Value, certain, leaves, length, point
 from aidl_lang.checking.types import BoxType
 from aidl_lang.common.records import record
 
@@ -53,9 +53,9 @@ class Box:
             case "left" | "right" | "top" | "bottom":
                 return length(self.side(name))
             case "width" | "height":
-                return length(ex.sub(self.side(high), self.side(low)))
+                return length(self.side(high) - self.side(low))
             case "center_x" | "center_y":
-                return length(ex.half(ex.add(self.side(low), self.side(high))))
+                return length((self.side(low) + self.side(high)) * 0.5)
             case "center":
                 return self._at("center", "center")
             case _:
@@ -67,9 +67,7 @@ class Box:
     def _at(self, vertical: str, horizontal: str) -> PointVal:
         x = self.field("center_x" if horizontal == "center" else horizontal)
         y = self.field("center_y" if vertical == "center" else vertical)
-        assert isinstance(x, Num)
-        assert isinstance(y, Num)
-        return point(x.expression, y.expression)
+        return point(certain(x, Num).expression, certain(y, Num).expression)
 
 
 @record(frozen=False, eq=False)
@@ -186,19 +184,17 @@ def extent(side: _Side, ignored: frozenset[Structure]) -> Expression:
 def _extreme_of(candidates: list[Expression], side: str) -> Expression:
     if not candidates:
         return ex.ZERO
-    if len(candidates) == 1:
-        return candidates[0]
-    return ex.apply("maximum" if side in ("right", "top") else "minimum", *candidates)
+    return candidates[0] if len(candidates) == 1 else ex.apply(towards(side).further, *candidates)
 
 
 def _extremes(
     source: Source, here: Structure, side: str, ignored: frozenset[Structure]
 ) -> Iterator[Expression]:
     if isinstance(source, PointVal):
-        yield xy(source)[side in ("top", "bottom")]
+        yield xy(source)[towards(side).axis]
     elif isinstance(source, Geometry):
         if source.type == "point":
-            yield xy(view(source, here)["at"])[side in ("top", "bottom")]
+            yield xy(view(source, here)["at"])[towards(side).axis]
         else:
             for primitive in source.primitives(even_construction=True):
                 yield from _curve(primitive, here, side)
@@ -212,9 +208,9 @@ def _structure(
     """Yields candidates for the extreme of a structure within the `whole` that has the box."""
     if source.plan:
         left, bottom, width, height = source.plan
-        right, top = ex.add(left, width), ex.add(bottom, height)
+        right, top = left + width, bottom + height
         for corner in ((left, bottom), (right, bottom), (left, top), (right, top)):
-            yield convert(*corner, source, here)[side in ("top", "bottom")]
+            yield convert(Place(*corner), source, here)[towards(side).axis]
     for primitive in source.drawn():
         if not _lies_inside(primitive, whole, ignored):
             yield from _curve(primitive, here, side)
@@ -229,8 +225,7 @@ def _lies_inside(outline: Geometry, whole: Structure, ignored: frozenset[Structu
     """Tells whether an outline made of others is a part of one in the same box, as a pattern is of the wall
     that it fills: it takes no room of its own then.
     """
-    recipe = outline.recipe
-    if recipe is None:
+    if (recipe := outline.recipe) is None:
         return False
     covers: Sequence[tuple[Geometry, ...]] = ()
     match recipe.kind:
@@ -260,8 +255,7 @@ def _curve(primitive: Geometry, here: Structure, side: str) -> Iterable[Expressi
     return curves.reach(primitive, here, side)
 
 
-_AS_WIDE = frozenset({"hull", "union", "shell"})
-"""Outlines whose box is the box of their sources."""
+_AS_WIDE = frozenset({"hull", "union", "shell"})  # outlines whose box is the box of their sources
 
 
 def _made(outline: Geometry, recipe: Recipe, here: Structure, side: str) -> Iterator[Expression]:
@@ -276,7 +270,7 @@ def _made(outline: Geometry, recipe: Recipe, here: Structure, side: str) -> Iter
         case kind if kind in _AS_WIDE:
             grown = ex.ZERO
         case "thick" if recipe.words["caps"] == recipe.words["joins"] == "round":
-            grown = ex.half(recipe.numbers["width"].expression)
+            grown = recipe.numbers["width"].expression * 0.5
         case "offset" if (
             recipe.words["corners"] == "round" and (out := recipe.numbers["distance"]).value >= 0
         ):
@@ -286,7 +280,7 @@ def _made(outline: Geometry, recipe: Recipe, here: Structure, side: str) -> Iter
         return
     for source in sources:
         for extreme in _extremes(source, here, side, frozenset()):
-            yield ex.apply("add" if side in ("right", "top") else "sub", extreme, grown)
+            yield towards(side).outwards(extreme, grown)
 
 
 def foreseen(*roots: Expression) -> tuple[Expression, ...]:
@@ -310,26 +304,32 @@ def with_measured(
     return tuple(replaced.get(root, root) for root in roots)
 
 
-def _foreseen_side(measured: Measurement) -> Expression:
-    side, (outline,), here = measured.kind, measured.of, measured.here
+def _made_of(side: Measurement) -> tuple[Recipe, Structure]:
+    """Returns the recipe of the outline whose side is measured, and the structure that sees it."""
+    outline, here = side.of[0], side.here
     assert isinstance(outline, Geometry)
     assert outline.recipe is not None
     assert here is not None
-    recipe, is_high = outline.recipe, side in ("right", "top")
+    return outline.recipe, here
+
+
+def _foreseen_side(measured: Measurement) -> Expression:
+    side, (recipe, here) = measured.kind, _made_of(measured)
+    _, outwards, further = towards(side)
     reached = (
         (e for g in operand for e in _extremes(g, here, side, frozenset())) for operand in recipe.operands
     )
     extents = foreseen(*[_extreme_of(list(dict.fromkeys(each)), side) for each in reached])
     match recipe.kind:
         case "clip" | "intersect":
-            return ex.apply("minimum" if is_high else "maximum", *extents)
+            return ex.apply("minimum" if further == "maximum" else "maximum", *extents)
         case "offset":
             out = recipe.numbers["distance"].expression
         case "thick":
-            out = ex.half(recipe.numbers["width"].expression)
+            out = recipe.numbers["width"].expression * 0.5
         case _:
             return extents[0]
-    return ex.apply("add" if is_high else "sub", extents[0], out)
+    return outwards(extents[0], out)
 
 
 def constrain_sources(outline: Geometry, here: Structure) -> str:
@@ -352,12 +352,9 @@ def unmoved(*roots: Expression) -> frozenset[Unknown]:
     held: set[Unknown] = set()
     for node in ex.nodes(roots, only_open=True):
         if isinstance(node.payload, Measurement):
-            (outline,), here = node.payload.of, node.payload.here
-            assert isinstance(outline, Geometry)
-            assert outline.recipe is not None
-            assert here is not None
+            recipe, here = _made_of(node.payload)
             first, *others = (
-                {u for g in operand for u in source_unknowns(g, here)} for operand in outline.recipe.operands
+                {u for g in operand for u in source_unknowns(g, here)} for operand in recipe.operands
             )
             held |= set().union(*others) - first
     return frozenset(held)

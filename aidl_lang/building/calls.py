@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from aidl_lang.building.boxes import box_of
 from aidl_lang.building.coerce import all_within, as_point, edge_coordinate, items_of, owners_of
 from aidl_lang.building.construct import CONSTRUCTORS, construct, positions, refuses_measure, size, turn
 from aidl_lang.building.curves import ask_to_turn, is_of_directions
-from aidl_lang.building.evaluate import evaluate, iterate, truth, turn_scope
+from aidl_lang.building.evaluate import evaluate, truth, turns
 from aidl_lang.building.functions import FUNCTIONS
-from aidl_lang.building.model import Condition, Geometry, Structure, all_parts, reach_of
+from aidl_lang.building.model import Condition, Geometry, all_parts, reach_of
 from aidl_lang.building.outlines import remember, usable
 from aidl_lang.building.overloads import CallSite, arranged, candidates_of, no_overload, placing, site_of
 from aidl_lang.building.state import (
@@ -36,6 +36,7 @@ from aidl_lang.building.values import (
     RangeVal,
     RecordVal,
     Value,
+    certain,
     members,
     numbers_of,
     spliced,
@@ -66,8 +67,7 @@ def call(it: Interpreter, node: ast.Call, env: Env) -> Value:
         receiver = evaluate(it, node.receiver, env)
         if isinstance(receiver, Nothing):
             return NOTHING
-    candidates = candidates_of(it, node, env.scope, receiver)
-    if not candidates:
+    if not (candidates := candidates_of(it, node, env.scope, receiver)):
         return NOTHING  # reported by the checker, or its file could not be imported
     site = site_of(it, node, candidates)
     around, env = env, _env_of_arguments(site, env)
@@ -85,8 +85,7 @@ def call(it: Interpreter, node: ast.Call, env: Env) -> Value:
         return NOTHING
     candidate = candidates[site.signatures.index(chosen.signature)]
     values, nodes = arranged(chosen, given, nodes)
-    arguments = bound(it, chosen, values, nodes, env)
-    if arguments is None:
+    if (arguments := bound(it, chosen, values, nodes, env)) is None:
         return NOTHING
     if (edit := it.edits.get(node)) is not None:
         arguments = edit(chosen, arguments)
@@ -105,12 +104,10 @@ def _env_of_arguments(site: CallSite, env: Env) -> Env:
     """Returns the environment of a call's arguments, which may reach further or less far than around it."""
     if env.reach is Reach.OWN and site.instantiates:
         # References passed to a template are tied by its instantiating structure, which may reach further.
-        return Env(env.scope, env.here, Reach.SUBTREE)
+        return env.reaching(Reach.SUBTREE)
     if env.reach is Reach.OWN and (site.derives or site.connects):
-        return Env(env.scope, env.here, Reach.ABOVE)
-    if env.reach is Reach.ABOVE and site.draws and not site.connects:
-        return Env(env.scope, env.here, Reach.OWN)
-    return env
+        return env.reaching(Reach.ABOVE)
+    return env.reaching(Reach.OWN) if env.reach is Reach.ABOVE and site.draws and not site.connects else env
 
 
 def _given(
@@ -134,8 +131,7 @@ def bound(
             result[name] = ListVal(tuple(item for i in indices for item in spliced(values[i])))
             continue
         at = nodes[indices[0]]
-        value = _as_kind(it, values[indices[0]], kind, at, env)
-        if value is None:
+        if (value := _as_kind(it, values[indices[0]], kind, at, env)) is None:
             return None
         is_flag = isinstance(kind, TruthType) and (signature.kind is None or name == "rotatable")
         if is_flag and isinstance(value, Condition):  # decides how something is made, so it has to be known
@@ -149,34 +145,25 @@ def bound(
 
 
 def _as_kind(it: Interpreter, value: Value, kind: Type, node: ast.Node, env: Env) -> Value | None:
-    convert = _CONVERSIONS.get(type(kind))
-    return convert(it, value, kind, node, env) if convert is not None else value
-
-
-def _as_number(it: Interpreter, value: Value, kind: NumberType, node: ast.Node, env: Env) -> Value | None:
-    if isinstance(value, Num):
-        same = value.dimension == kind.dimension
-        return value if same else Num(value.expression, kind.dimension, value.status)
-    return edge_coordinate(it, value, node, env) if isinstance(value, Geometry) else value
-
-
-def _as_list(it: Interpreter, value: Value, kind: ListType, node: ast.Node, env: Env) -> Value | None:
-    if isinstance(kind.element, PointType) and (items := members(value)) is not None:
-        points = [as_point(it, item, node, env) if isinstance(item, ListVal) else item for item in items]
-        return ListVal(tuple(p for p in points if p is not None))
-    if isinstance(value, Array | RangeVal):
-        held = items_of(it, value, node)
-        return ListVal(tuple(held)) if held is not None else None
-    return value
-
-
-_CONVERSIONS: Mapping[type[Type], Callable[..., Value | None]] = {
-    NumberType: _as_number,
-    PointType: lambda it, value, kind, node, env: as_point(it, value, node, env),
-    BoxType: lambda it, value, kind, node, env: box_of(value, env.here),
-    ListType: _as_list,
-}
-"""Conversions of an argument to the kind of value of its parameter; other kinds stay as they are."""
+    """Returns an argument as the kind of value that its parameter asks for; other kinds stay as they are."""
+    match kind:
+        case NumberType(dimension=dimension) if isinstance(value, Num):
+            same = value.dimension == dimension
+            return value if same else Num(value.expression, dimension, value.status)
+        case NumberType() if isinstance(value, Geometry):
+            return edge_coordinate(it, value, node, env)
+        case PointType():
+            return as_point(it, value, node, env)
+        case BoxType():
+            return box_of(value, env.here)
+        case ListType(element=PointType()) if (items := members(value)) is not None:
+            points = [as_point(it, item, node, env) if isinstance(item, ListVal) else item for item in items]
+            return ListVal(tuple(p for p in points if p is not None))
+        case ListType() if isinstance(value, Array | RangeVal):
+            held = items_of(it, value, node)
+            return ListVal(tuple(held)) if held is not None else None
+        case _:
+            return value
 
 
 def invoke(
@@ -203,7 +190,7 @@ def invoke(
             condition = run_items(it, definition.body, inner)
             if condition is True and binding.gathered and len(values) == len(binding.arguments) == 1:
                 _says_nothing(it, node, values[0])
-            condition = placing(condition, definition, binding, values, env)
+            condition = placing(condition, binding, values, env)
             is_stated = env.reach is Reach.SUBTREE and it.place(node) is node.span  # not by the library
             if is_of_directions(candidate.signature) and is_stated:
                 ask_to_turn(condition.comparisons() if isinstance(condition, Condition) else ())
@@ -218,7 +205,7 @@ def _inside(
     it: Interpreter, candidate: Candidate, arguments: Arguments, parameters: Sequence[ast.Parameter], env: Env
 ) -> Env:
     """Returns the environment of the body of a definition: its parameters, with what they get."""
-    inner = Env(Scope(candidate.scope), env.here, env.reach)
+    inner = env.within(Scope(candidate.scope))
     for parameter, (name, kind, _) in zip(parameters, candidate.signature.parameters, strict=True):
         value = arguments.get(name)
         inner.scope.values[name] = default_of(it, parameter, kind, inner) if value is None else value
@@ -241,25 +228,21 @@ def run_items(it: Interpreter, block: ast.Block, env: Env) -> Value:
     scope.values |= {s.name.text: LetBinding(s.value, scope) for s in named}
     found: list[Value] = []
     for statement in block.statements:
-        inner = Env(scope, env.here, env.reach)
         match statement:
             case ast.ExpressionStatement(value=value):
-                found.append(evaluate(it, value, inner))
+                found.append(evaluate(it, value, env))
             case ast.Equation():
                 if not any(d.code == "N0501" and d.span == statement.span for d in it.diagnostics):
                     it.report("N0501", "`=` inside `constraint` is read as `==`", statement)
-                found.append(evaluate(it, statement.meant, inner))
+                found.append(evaluate(it, statement.meant, env))
             case ast.Constrain(items=items):
-                found.append(run_items(it, items, inner))
-            case ast.For(variables=variables, iterable=iterable, body=body):
-                for item in iterate(it, iterable, inner) or ():
-                    it.count_turn(statement)
-                    turn = turn_scope(it, scope, variables, item, statement)
-                    found.append(run_items(it, body, Env(turn, env.here, env.reach)))
+                found.append(run_items(it, items, env))
+            case ast.For(body=body):
+                found += [run_items(it, body, turn) for turn in turns(it, statement, env) or ()]
             case ast.If(test=test, then=then, otherwise=otherwise):
-                chosen = then if truth(it, evaluate(it, test, inner), test) else otherwise
+                chosen = then if truth(it, evaluate(it, test, env), test) else otherwise
                 if chosen is not None:
-                    found.append(run_items(it, chosen, inner))
+                    found.append(run_items(it, chosen, env))
             case ast.Let() | ast.Assign():
                 pass
             case _:
@@ -277,8 +260,7 @@ def _says_nothing(it: Interpreter, node: ast.Call, only: Value) -> None:
 
 
 def _shape(it: Interpreter, candidate: Candidate, arguments: Arguments, node: ast.Call, env: Env) -> Value:
-    definition = candidate.signature.node
-    assert isinstance(definition, ast.ShapeDefinition)
+    definition = certain(candidate.signature.node, ast.ShapeDefinition)
     it.count_entity(node)
     geometry = Geometry(definition.name.text, env.here, it.place(node))
     scope = Scope(candidate.scope, geometry)
@@ -289,11 +271,11 @@ def _shape(it: Interpreter, candidate: Candidate, arguments: Arguments, node: as
     for parameter, (name, kind, _) in pairs:
         if name not in given:
             scope.values.update(given)  # a default may mention the parameters before it
-            given[name] = default_of(it, parameter, kind, Env(scope, env.here, env.reach))
+            given[name] = default_of(it, parameter, kind, env.within(scope))
         if isinstance(given[name], Nothing):
             return NOTHING
-    _bind_shape(it, definition.parameters, candidate.signature, given, geometry, scope)
-    run_block(it, definition.body.statements, scope, env.here)
+    _bind_shape(it, candidate.signature, given, geometry)
+    run_block(it, definition.body.statements, Env(scope, env.here))
     _bind_above(it, geometry, given, env)
     return geometry
 
@@ -303,46 +285,35 @@ def _bind_above(it: Interpreter, geometry: Geometry, given: Arguments, env: Env)
     if env.reach is not Reach.ABOVE:
         return
     owners = (owner for value in given.values() for owner in owners_of(value, env.here))
-    reach = reach_of(owners, env.here)
-    if reach is None:
+    if (reach := reach_of(owners, env.here)) is None:
         return
     for g in (geometry, *all_parts(geometry)):
         g.reach = reach
         it.following.append(g)
 
 
-def _bind_shape(
-    it: Interpreter,
-    parameters: Sequence[ast.Parameter],
-    signature: Signature,
-    given: Arguments,
-    geometry: Geometry,
-    scope: Scope,
-) -> None:
+def _bind_shape(it: Interpreter, signature: Signature, given: Arguments, geometry: Geometry) -> None:
     """Binds number and point arguments to one unknown each (or what they refer to); the rest is constant."""
     # A point given by itself comes before those in lists: it is where an outline begins.
     order = sorted(given.items(), key=lambda item: not isinstance(item[1], PointVal))
     points = [found for name, value in order for found in _points_in(name, value)]
     placed = positions(it, [p for _, p in points], geometry, [n for n, _ in points])
     moved = dict(zip((n for n, _ in points), placed, strict=True))
+    parameters = certain(signature.node, ast.ShapeDefinition).parameters
     for parameter, (name, kind, _) in zip(parameters, signature.parameters, strict=True):
         value = given[name]
-        word = parameter.type.text if parameter.type else ""
-        if isinstance(value, Num):
-            value = _bind_number(it, value, kind, word, name, given, geometry)
+        if isinstance(value, Num) and parameter.type and parameter.type.text == "turn":
+            value = turn(it, value, geometry, name, rotatable=given.get("rotatable") is True)
+        elif isinstance(value, Num):
+            value = _bind_number(it, value, kind, name, geometry)
         else:
             value = _bind_inside(it, value, name, moved, geometry)
-        scope.values[name] = value
+        certain(geometry.scope, Scope).values[name] = value
 
 
-def _bind_number(
-    it: Interpreter, value: Num, kind: object, word: str, name: str, given: Arguments, geometry: Geometry
-) -> Num:
-    whole = isinstance(kind, NumberType) and kind.whole
-    if whole:
+def _bind_number(it: Interpreter, value: Num, kind: Type, name: str, geometry: Geometry) -> Num:
+    if isinstance(kind, NumberType) and kind.whole:
         return value
-    if word == "turn":
-        return turn(it, value, geometry, name, rotatable=given.get("rotatable") is True)
     dimension = kind.dimension if isinstance(kind, NumberType) else value.dimension
     bound = size(it, value, geometry, name, dimension)
     payload = bound.expression.payload
@@ -378,7 +349,7 @@ def _bind_inside(
             bound: dict[str, Value] = {}
             for k, v in fields.items():
                 if isinstance(v, Num):
-                    bound[k] = _bind_number(it, v, ANY, "", f"{name}.{k}", {}, geometry)
+                    bound[k] = _bind_number(it, v, ANY, f"{name}.{k}", geometry)
                 else:
                     bound[k] = _bind_inside(it, v, f"{name}.{k}", moved, geometry)
             return RecordVal(bound)
@@ -389,15 +360,15 @@ def _bind_inside(
 # --- Bodies: the declarations that hold in the whole of one, and its statements one by one.
 
 
-def run_block(it: Interpreter, statements: Sequence[ast.Statement], scope: Scope, here: Structure) -> None:
+def run_block(it: Interpreter, statements: Sequence[ast.Statement], env: Env) -> None:
     """Runs the statements of a body. Callables and constants are visible in the whole of it."""
-    hoist_callables(it, scope, statements)
-    hoist_values(scope, statements, here)
-    ahead = Ahead(statements, scope, here)
+    hoist_callables(it, env.scope, statements)
+    hoist_values(env, statements)
+    ahead = Ahead(statements, env)
     it.ahead.append(ahead)
     try:
         for ahead.next, statement in enumerate(statements, start=1):
-            execute(it, statement, scope, here)
+            _execute(it, statement, env)
     finally:
         it.ahead.pop()
 
@@ -412,22 +383,23 @@ def hoist_callables(it: Interpreter, scope: Scope, statements: Iterable[ast.Stat
             scope.define(Candidate(it.signatures[node], scope))
 
 
-def hoist_values(scope: Scope, statements: Iterable[ast.Statement], here: Structure) -> None:
+def hoist_values(env: Env, statements: Iterable[ast.Statement]) -> None:
+    scope = env.scope
     for node in statements:
         match node:
             case ast.Let():
                 scope.values.setdefault(node.name.text, LetBinding(node.value, scope))
             case ast.Param():
-                scope.values.setdefault(node.name.text, ParamBinding(node, scope, here))
+                scope.values.setdefault(node.name.text, ParamBinding(node, scope, env.here))
 
 
-def execute(it: Interpreter, node: ast.Statement, scope: Scope, here: Structure) -> None:
+def _execute(it: Interpreter, node: ast.Statement, env: Env) -> None:
     """Carries out a statement; definitions were hoisted and do nothing here."""
     if (run := it.executors.get(type(node))) is None:
         return
     it.check_time(node)
     try:
-        run(it, node, scope, here)
+        run(it, node, env)
     except RecursionError:
         it.too_deep(node)
 

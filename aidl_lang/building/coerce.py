@@ -22,6 +22,7 @@ from aidl_lang.building.values import (
     RecordVal,
     TextVal,
     Value,
+    certain,
     kind_of,
     length,
     members,
@@ -105,8 +106,7 @@ def numeric(it: Interpreter, value: Value, node: ast.Node, env: Env) -> Num | No
 
 def coordinate(it: Interpreter, value: Value, node: ast.Node, env: Env) -> Num | None:
     """Returns a number as a coordinate; an edge of an axis-aligned shape stands for its own."""
-    found = numeric(it, value, node, env)
-    if found is None:
+    if (found := numeric(it, value, node, env)) is None:
         return None
     if found.dimension not in (None, PLAIN, LENGTH):
         it.misfit(rules.no_coordinate(shown(node), type_of(found)), node)
@@ -187,8 +187,7 @@ def whole(it: Interpreter, value: Value, node: ast.Node, what: str) -> int | Non
     if not isinstance(value, Num):
         it.misfit(rules.no_whole_number(what, type_of(value)), node)
         return None
-    known = constant(it, value, node, what)
-    if known is None:
+    if (known := constant(it, value, node, what)) is None:
         return None
     if abs(known - round(known)) > 1e-9 * max(1.0, abs(known)) or not math.isfinite(known):
         it.misfit(rules.fraction(what, f"{known:g}"), node, _numbered(it, node))
@@ -251,8 +250,7 @@ def items_of(it: Interpreter, value: Value, node: ast.Node) -> Sequence[Value] |
 
 def entry(it: Interpreter, value: RecordVal, name: str, node: ast.Node) -> Value:
     """Returns a field of a record by its name, in any spelling that `find` accepts."""
-    key = find(name, value.fields)
-    if key is None:
+    if (key := find(name, value.fields)) is None:
         known = first_few(ticked(value.fields), 12, "")
         hints = did_you_mean(nearest(name, value.fields)) or [f"it has {known}" if known else "it is empty"]
         it.report("E0202", f"this record has no `{name}`", node, hints=hints)
@@ -285,8 +283,7 @@ def _str(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
     value = a["value"]
     if isinstance(value, Num) and constant(it, value, node, "a number that becomes a text") is None:
         return NOTHING
-    text = as_text(value)
-    if text is None:
+    if (text := as_text(value)) is None:
         it.report("E0302", f"`str` writes numbers, texts and truth values, not {kind_of(value)}", node)
         return NOTHING
     return TextVal(text)
@@ -294,10 +291,8 @@ def _str(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
 
 def _range(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
     """Returns the numbers of a range as in Python: without the end, and one number alone is the end."""
-    start, end, step = a.get("start", number(0.0)), a["end"], a.get("step")
-    assert isinstance(start, Num)
-    assert isinstance(end, Num)
-    assert step is None or isinstance(step, Num)
+    start, end = certain(a.get("start", number(0.0)), Num), certain(a["end"], Num)
+    step = certain(a["step"], Num) if "step" in a else None
     items = run(it, RangeVal(start, end, exclusive=True, step=step), node)
     return ListVal(tuple(items)) if items is not None else NOTHING
 

@@ -10,11 +10,21 @@ from typing import TYPE_CHECKING
 
 from aidl_lang.building import expression as ex
 from aidl_lang.building.boxes import SIDES
-from aidl_lang.building.curves import direction, distance, polar
-from aidl_lang.building.expression import Expression
+from aidl_lang.building.curves import direction, distance, polar, xy
+from aidl_lang.building.expression import Expression, Place
 from aidl_lang.building.model import Constraint, Geometry, Holder, Measurement, is_size
 from aidl_lang.building.state import Arguments, Env, Interpreter, Stop
-from aidl_lang.building.values import Exactness, Nothing, Num, PointVal, TextVal, Value, length, point
+from aidl_lang.building.values import (
+    Exactness,
+    Nothing,
+    Num,
+    PointVal,
+    TextVal,
+    Value,
+    certain,
+    length,
+    point,
+)
 from aidl_lang.building.wording import all_of, compare_numbers
 from aidl_lang.checking.builtins import SIGNATURES
 from aidl_lang.checking.rules import place_before
@@ -66,7 +76,7 @@ def check_bare_points(it: Interpreter, node: ast.Call, arguments: Mapping[str, V
 
 
 def _apart(a: PointVal, b: PointVal) -> float:
-    return math.hypot(b.x.value - a.x.value, b.y.value - a.y.value)
+    return (b.place - a.place).length.value
 
 
 def differ(a: float, b: float) -> float:
@@ -94,9 +104,7 @@ def trace_of(it: Interpreter, name: str) -> Trace:
 
 def part(it: Interpreter, a: Mapping[str, Value], node: ast.Call, env: Env) -> Value:
     """Returns some outlines of a drawing, to be measured and copied: they are drawn with the others."""
-    whole, name = a["of"], a["part"]
-    assert isinstance(whole, Geometry)
-    assert isinstance(name, TextVal)
+    whole, name = certain(a["of"], Geometry), certain(a["part"], TextVal)
     outlines = trace_of(it, name.value)
     return replace(whole, trace=outlines, name=name.value, container=whole, views={}, attributes={})
 
@@ -147,9 +155,8 @@ def turn(it: Interpreter, value: Num, holder: Geometry, name: str, rotatable: bo
     expression = value.expression
     if not expression.is_constant or value.status >= Exactness.PARAM or (value.value != 0 and not rotatable):
         return size(it, value, holder, name, ANGLE)
-    made = it.unknown(value.value, holder, name, dimension=ANGLE)
-    assert isinstance(made.payload, ex.Unknown)
-    made.payload.locked = made.payload.exact = not rotatable and value.status is not Exactness.GUESS
+    stays = not rotatable and value.status is not Exactness.GUESS
+    made = it.unknown(value.value, holder, name, dimension=ANGLE, locked=stays)
     it.became(value, made, holder, name, ANGLE)
     return Num(made, ANGLE, Exactness.REFERENCE)
 
@@ -168,12 +175,26 @@ def positions(
     placed: list[PointVal] = []
     anchors: dict[str, tuple[Num, Expression, str]] = {}
     before: tuple[PointVal, PointVal, str] | None = None
+
+    def coordinate(axis: str, number: Num, name: str) -> Expression:
+        """Returns one coordinate: exact, a first guess, or a difference from the first guess before it."""
+        if number.status >= Exactness.FIXED:
+            return solvable(it, number, holder.span)
+        if axis not in anchors or number.status is Exactness.GUESS:
+            made = it.unknown(number.value, holder, f"{name}.{axis}", dimension=LENGTH)
+            anchors.setdefault(axis, (number, made, name))
+            return made
+        first, base, since = anchors[axis]
+        offset = number.value - first.value
+        if Exactness.PARAM in (number.status, first.status):
+            return base + offset
+        return base + it.unknown(offset, holder, f"{name}.d{axis}", dimension=LENGTH, kept=True, since=since)
+
     for at, name in zip(points, names, strict=True):
         if edges and literal(at) and before is not None and _differ(before[0], at):
             made = _beyond(it, before, at, holder, name)
         else:
-            x = _coordinate(it, "x", at.x, anchors, holder, name)
-            made = point(x, _coordinate(it, "y", at.y, anchors, holder, name))
+            made = point(coordinate("x", at.x, name), coordinate("y", at.y, name))
         if literal(at):
             before = (at, made, name)
         it.became_point(at, made, holder, name)
@@ -210,38 +231,9 @@ def _way(a: PointVal, b: PointVal) -> tuple[Num, Num]:
     return Num(ex.constant(math.hypot(x, y)), LENGTH), Num(ex.constant(math.degrees(math.atan2(y, x))), ANGLE)
 
 
-def _coordinate(
-    it: Interpreter,
-    axis: str,
-    number: Num,
-    anchors: dict[str, tuple[Num, Expression, str]],
-    holder: Holder,
-    name: str,
-) -> Expression:
-    """Returns one coordinate: exact, a first guess, or a difference from the first guess before it."""
-    if number.status >= Exactness.FIXED:
-        return solvable(it, number, holder.span)
-    if axis not in anchors or number.status is Exactness.GUESS:
-        made = it.unknown(number.value, holder, f"{name}.{axis}", dimension=LENGTH)
-        anchors.setdefault(axis, (number, made, name))
-        return made
-    first, base, since = anchors[axis]
-    offset = number.value - first.value
-    if Exactness.PARAM in (number.status, first.status):
-        return ex.add(base, ex.constant(offset))
-    kept = it.unknown(offset, holder, f"{name}.d{axis}", dimension=LENGTH, kept=True, since=since)
-    return ex.add(base, kept)
-
-
 def _point(it: Interpreter, g: Geometry, a: Arguments, env: Env) -> None:
-    at = a.get("at")
-    if at is None:
-        x, y = a["x"], a["y"]
-        assert isinstance(x, Num)
-        assert isinstance(y, Num)
-        at = PointVal(x, y)
-    assert isinstance(at, PointVal)
-    g.fields = {"at": loose_point(it, at, g)}
+    at = a["at"] if "at" in a else PointVal(certain(a["x"], Num), certain(a["y"], Num))
+    g.fields = {"at": loose_point(it, certain(at, PointVal), g)}
 
 
 def loose_point(it: Interpreter, at: PointVal, g: Geometry) -> PointVal:
@@ -249,7 +241,7 @@ def loose_point(it: Interpreter, at: PointVal, g: Geometry) -> PointVal:
     return point(*loose_place(it, at, g))
 
 
-def loose_place(it: Interpreter, at: PointVal, of: Holder) -> tuple[Expression, Expression]:
+def loose_place(it: Interpreter, at: PointVal, of: Holder) -> Place:
     """Returns the coordinates of a point or a frame: exact ones as they are, else unknowns `x` and `y`."""
     owner, moved = (of.owner, None) if isinstance(of, Geometry) else (of.parent or of, of)
 
@@ -259,7 +251,7 @@ def loose_place(it: Interpreter, at: PointVal, of: Holder) -> tuple[Expression, 
         made = it.unknown(n.value, of, axis, owner=owner, dimension=LENGTH, frame_of=moved)
         return it.became(n, made, of, axis)
 
-    return coordinate(at.x, "x"), coordinate(at.y, "y")
+    return Place(coordinate(at.x, "x"), coordinate(at.y, "y"))
 
 
 def _points(it: Interpreter, g: Geometry, a: Arguments, names: Sequence[str]) -> dict[str, Value]:
@@ -269,18 +261,14 @@ def _points(it: Interpreter, g: Geometry, a: Arguments, names: Sequence[str]) ->
 
 
 def _written(a: Arguments, name: str) -> PointVal:
-    value = a.get(name, _ORIGIN)
-    assert isinstance(value, PointVal)
-    return value
+    return certain(a.get(name, _ORIGIN), PointVal)
 
 
 _ORIGIN = PointVal(Num(ex.ZERO, LENGTH), Num(ex.ZERO, LENGTH))
 
 
 def _size(it: Interpreter, g: Geometry, a: Arguments, name: str, dimension: MaybeDimension = LENGTH) -> Num:
-    value = a[name]
-    assert isinstance(value, Num)
-    return size(it, value, g, name, dimension)
+    return size(it, certain(a[name], Num), g, name, dimension)
 
 
 def _line(it: Interpreter, g: Geometry, a: Arguments, env: Env) -> None:
@@ -307,7 +295,7 @@ def _circle(it: Interpreter, g: Geometry, a: Arguments, env: Env) -> None:
         g.fields["radius"] = _size(it, g, a, "radius")
     else:
         diameter = _size(it, g, a, "diameter")
-        g.fields |= {"diameter": diameter, "radius": length(ex.half(diameter.expression))}
+        g.fields |= {"diameter": diameter, "radius": length(diameter.expression * 0.5)}
 
 
 def _arc(it: Interpreter, g: Geometry, a: Arguments, env: Env) -> None:
@@ -326,8 +314,7 @@ def _arc(it: Interpreter, g: Geometry, a: Arguments, env: Env) -> None:
         hidden = [distance(g.fields["center"], g.fields["end"])]
         if "radius" in a:
             hidden.append(distance(g.fields["center"], g.fields["start"]))
-        radius = g.fields["radius"]
-        assert isinstance(radius, Num)
+        radius = certain(g.fields["radius"], Num)
         hold(it, g, [(length(h), radius) for h in hidden])
 
 
@@ -361,12 +348,9 @@ def _arc_by_radius(it: Interpreter, g: Geometry, a: Arguments) -> None:
     height = (max(reach * reach - chord * chord / 4, 0.0)) ** 0.5
     # Counter-clockwise and shorter than half a turn, the centre lies to the left of the chord.
     side = 1.0 if (a.get("large") is True) == g.clockwise else -1.0
-    along = direction(start, end).value + 90.0 * side
-    c, s = ex.exact_turn(along)
-    assert isinstance(start, PointVal)
-    assert isinstance(end, PointVal)
-    x = (start.x.value + end.x.value) / 2 + height * c
-    y = (start.y.value + end.y.value) / 2 + height * s
+    c, s = ex.exact_turn(direction(start, end).value + 90.0 * side)
+    (ax, ay), (bx, by) = xy(start).written, xy(end).written
+    x, y = (ax + bx) / 2 + height * c, (ay + by) / 2 + height * s
     center = PointVal(Num(ex.constant(x), LENGTH), Num(ex.constant(y), LENGTH))
     g.fields["center"] = positions(it, [center], g, ["center"])[0]
 
@@ -391,8 +375,7 @@ def _plain(it: Interpreter, g: Geometry, a: Arguments, env: Env) -> None:
     g.fields = dict(zip(points, placed, strict=True))
     for name, kind, is_optional in numbers:
         if is_optional and kind.dimension == ANGLE:
-            angle = a.get(name, Num(ex.ZERO, ANGLE))
-            assert isinstance(angle, Num)
+            angle = certain(a.get(name, Num(ex.ZERO, ANGLE)), Num)
             g.fields[name] = turn(it, angle, g, name, rotatable=False)
         else:
             g.fields[name] = _size(it, g, a, name, kind.dimension)
@@ -419,11 +402,8 @@ def _glyphs(it: Interpreter, g: Geometry, a: Arguments, env: Env) -> None:
 
 def _traced(it: Interpreter, g: Geometry, a: Arguments, env: Env) -> None:
     """Takes the outlines from the drawing that the call stands in."""
-    part = a["part"]
-    assert isinstance(part, TextVal)
-    g.trace = trace_of(it, part.value)
-    unit = a["unit"]
-    assert isinstance(unit, Num)
+    g.trace = trace_of(it, certain(a["part"], TextVal).value)
+    unit = certain(a["unit"], Num)
     if unit.value < 0:
         message = f"the scale of this drawing is {unit.value:g}, and sizes are never negative"
         hints = ["`angle: 180deg` turns it about, and `mirror(…)` makes a mirror image of it"]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import field, replace
 
 from aidl_lang.building import curves
@@ -14,7 +14,6 @@ from aidl_lang.building.curves import (
     NOWHERE,
     STILL,
     Motion,
-    Place,
     after,
     clockwise,
     mirrored_at_line,
@@ -26,6 +25,7 @@ from aidl_lang.building.curves import (
     view,
     xy,
 )
+from aidl_lang.building.expression import Place
 from aidl_lang.building.members import read
 from aidl_lang.building.model import Frame, Geometry, Structure, convert, reach_of
 from aidl_lang.building.outlines import keep_unnamed
@@ -37,7 +37,6 @@ from aidl_lang.building.state import (
     Interpreter,
     LetBinding,
     NameBinding,
-    Reach,
     Scope,
     own_names,
 )
@@ -54,6 +53,7 @@ from aidl_lang.building.values import (
     StructureCopy,
     TextVal,
     Value,
+    certain,
     kind_of,
     leaves,
     members,
@@ -171,7 +171,7 @@ class Copier:
     @property
     def _swaps_sides(self) -> bool:
         """True if left becomes right; otherwise a reflection exchanges top and bottom."""
-        return self.owner is not None and self.motion.mirrored and self.motion.cos.value > 1e-9
+        return self.owner is not None and self.motion.mirrored and self.motion.facing.x.value > 1e-9
 
     def _renamed(self, name: str, names: Scope) -> str:
         """Returns the name of a part after a reflection: the part called left is on the left again."""
@@ -214,9 +214,7 @@ class Copier:
 
     def _point(self, p: PointVal, owner: Structure) -> PointVal:
         if self.owner is not None:
-            seen = translate("", p, owner, self.owner)
-            assert isinstance(seen, PointVal)
-            p = seen
+            p = certain(translate("", p, owner, self.owner), PointVal)
         return p if self.motion is STILL else self.motion.point(p)
 
     def _number(self, name: str, value: Num, owner: Structure) -> Num:
@@ -224,9 +222,7 @@ class Copier:
             return value
         if name in DIRECTIONS:
             if self.owner is not None:
-                seen = translate(name, value, owner, self.owner)
-                assert isinstance(seen, Num)
-                value = seen
+                value = certain(translate(name, value, owner, self.owner), Num)
             return replace(value, expression=self.motion.direction(value.expression))
         return replace(value, expression=self.motion.measure(value.expression, value.dimension))
 
@@ -279,11 +275,11 @@ class Copier:
         self.structures[source] = copy
         if source.plan is not None:
             x, y, width, height = source.plan
-            grown = (ex.mul(self.motion.scale, e) for e in (width, height))
-            copy.plan = (*self.motion.place(x, y), *grown)  # type: ignore[assignment]
+            x, y = self.motion.place(Place(x, y))
+            copy.plan = x, y, self.motion.scale * width, self.motion.scale * height
         for child in source.children:
             frame = child.frame
-            inner = Frame(*self.motion.place(frame.x, frame.y), frame.rotation, frame.mirrored)
+            inner = Frame(*self.motion.place(frame.origin), frame.rotation, frame.mirrored)
             self.structure(child, copy, child.name, inner)
         self._members(source, copy)
         for child in source.children:
@@ -295,8 +291,7 @@ class Copier:
         return copy
 
     def _members(self, source: Structure, copy: Structure) -> None:
-        names = source.scope
-        assert isinstance(names, Scope)
+        names = certain(source.scope, Scope)
         copy.scope = scope = Scope(_around(names.parent, source, copy), copy, labels=names.labels)
         own_names(scope, copy)
         for name, binding in names.values.items():
@@ -395,28 +390,22 @@ def centre_of(it: Interpreter, value: Value, node: ast.Node, env: Env) -> Place:
         case PointVal():
             return xy(value)
         case Structure():
-            return convert(*NOWHERE, value, here)
+            return convert(NOWHERE, value, here)
         case StructureCopy(source, motion):
-            return motion.place(
-                *(convert(*NOWHERE, source, here) if isinstance(source, Structure) else NOWHERE)
-            )
+            return motion.place(convert(NOWHERE, source, here) if isinstance(source, Structure) else NOWHERE)
         case Geometry():
             if (known := _own_centre(it, value, node, here)) is not None:
                 return xy(known)
-    box = box_of(value, here)
-    if box is None:
+    if (box := box_of(value, here)) is None:
         return NOWHERE
-    middle = box.field("center")
-    assert isinstance(middle, PointVal)
-    x, y = spelled_out(*xy(middle))
-    return x, y
+    return Place(*spelled_out(*certain(box.field("center"), PointVal).place))
 
 
 def _own_centre(it: Interpreter, g: Geometry, node: ast.Node, here: Structure) -> PointVal | None:
     found: Value | None
     if isinstance(g.scope, Scope):
         binding = g.scope.values.get("center")
-        found = read(it, binding, node, Env(g.scope, g.owner, Reach.OWN)) if binding is not None else None
+        found = read(it, binding, node, Env(g.scope, g.owner)) if binding is not None else None
         if isinstance(found, Geometry):
             return _own_centre(it, found, node, here)
         found = translate("center", found, g.owner, here) if isinstance(found, PointVal) else None
@@ -440,12 +429,11 @@ def _reflection(it: Interpreter, about: Value, node: ast.Call, env: Env) -> Moti
         case Geometry(type="point"):
             return mirrored_at_point(xy(view(about, env.here)["at"]))
         case Geometry(type="line"):
-            start, end = (view(about, env.here)[name] for name in ("start", "end"))
+            ends: Iterable[Value] = (view(about, env.here)[name] for name in ("start", "end"))
             if about.name is None and about.span is not None and about.span.overlaps(node.span):
-                start, end = as_written(start), as_written(end)  # written in the call, it is nothing to move
-            assert isinstance(start, PointVal)
-            assert isinstance(end, PointVal)
-            if any(p.value != q.value for p, q in zip(xy(start), xy(end), strict=True)):
+                ends = map(as_written, ends)  # written in the call, it is nothing to move
+            start, end = (certain(each, PointVal) for each in ends)
+            if start.place.written != end.place.written:
                 return mirrored_at_line(start, end)
             message, hint = "the line to mirror about has no length", "give its ends different places"
         case TextVal(word):
@@ -464,9 +452,8 @@ def _copy(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
         about = NOWHERE if a.keys() <= {"x", "by"} else centre_of(it, a["x"], node, env)
     to = xy(a["center"]) if "center" in a else about
     if "by" in a:
-        to = ex.add(to[0], xy(a["by"])[0]), ex.add(to[1], xy(a["by"])[1])
-    motion = _motion(it, a.get("angle"), a.get("scale"), about, to, node)
-    if motion is None:
+        to = to + xy(a["by"])
+    if (motion := _motion(it, a.get("angle"), a.get("scale"), about, to, node)) is None:
         return NOTHING
     copied_things = _geometry_in(a["x"])
     is_loose = any(g.name is None for g in copied_things) or isinstance(a["x"], Instantiation)
@@ -492,10 +479,7 @@ def motion_for(it: Interpreter, a: Arguments, centre: Callable[[], Place], node:
     if "by" in a:
         return translation(xy(a["by"]))
     if "dx" in a or "dy" in a:
-        dx, dy = (a.get(name, _NONE) for name in ("dx", "dy"))
-        assert isinstance(dx, Num)
-        assert isinstance(dy, Num)
-        return translation((dx.expression, dy.expression))
+        return translation(Place(*(certain(a.get(name, _NONE), Num).expression for name in ("dx", "dy"))))
     about = xy(a["about"]) if "about" in a else centre()
     return _motion(it, a.get("angle"), a.get("factor"), about, about, node)
 
@@ -503,9 +487,7 @@ def motion_for(it: Interpreter, a: Arguments, centre: Callable[[], Place], node:
 def _motion(
     it: Interpreter, angle: Value | None, scale: Value | None, about: Place, to: Place, node: ast.Call
 ) -> Motion | None:
-    motion = Motion(about, to)
-    if isinstance(angle, Num):
-        motion = turned(angle.expression, about, to)
+    motion = turned(angle.expression, about, to) if isinstance(angle, Num) else Motion(about, to)
     if isinstance(scale, Num):
         if not scale.value > 0:
             hint = "`mirror(x, about: …)` turns a thing over"

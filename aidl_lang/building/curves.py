@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import operator
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import lru_cache
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 from aidl_lang.building import expression as ex
-from aidl_lang.building.expression import Expression
+from aidl_lang.building.expression import Expression, Place
 from aidl_lang.building.model import (
     Comparison,
     Frame,
@@ -20,7 +21,7 @@ from aidl_lang.building.model import (
     convert_point,
     own_geometry,
 )
-from aidl_lang.building.values import Exactness, ListVal, Num, PointVal, length, numbers_of, point
+from aidl_lang.building.values import Exactness, ListVal, Num, PointVal, certain, length, numbers_of, point
 from aidl_lang.checking.types import Signature, fields_of
 from aidl_lang.checking.units import ANGLE, MaybeDimension
 from aidl_lang.common.records import record
@@ -74,52 +75,41 @@ def clockwise(geometry: Geometry, here: Structure) -> bool:
     return geometry.clockwise != is_reflected(geometry.owner, here)
 
 
-def xy(value: Value) -> tuple[Expression, Expression]:
-    assert isinstance(value, PointVal)
-    return value.x.expression, value.y.expression
+def xy(value: Value) -> Place:
+    return certain(value, PointVal).place
 
 
 def number(value: Value) -> Expression:
-    assert isinstance(value, Num)
-    return value.expression
+    return certain(value, Num).expression
 
 
 def direction(a: Value, b: Value) -> Expression:
     """Returns the direction from one point to another in degrees."""
-    (ax, ay), (bx, by) = xy(a), xy(b)
-    return ex.atan2(ex.sub(by, ay), ex.sub(bx, ax))
+    return (xy(b) - xy(a)).direction
 
 
 def distance(a: Value, b: Value) -> Expression:
-    (ax, ay), (bx, by) = xy(a), xy(b)
-    return ex.apply("hypot", ex.sub(bx, ax), ex.sub(by, ay))
+    return (xy(b) - xy(a)).length
 
 
 def sweep(core: Mapping[str, Value], is_clockwise: bool) -> Expression:
     """Returns the degrees from the start of an arc to its end, in its own sense; 0 to 360."""
     start, end = direction(core["center"], core["start"]), direction(core["center"], core["end"])
-    turn = ex.sub(start, end) if is_clockwise else ex.sub(end, start)
+    turn = start - end if is_clockwise else end - start
     return ex.apply("mod", turn, ex.constant(360.0))
 
 
 def polar(center: Value, radius: Expression, angle: Expression) -> PointVal:
-    x, y = xy(center)
-    return point(ex.add(x, ex.mul(radius, ex.cos(angle))), ex.add(y, ex.mul(radius, ex.sin(angle))))
+    return point(*(xy(center) + radius * ex.towards(angle)))
 
 
-def on_text(geometry: Geometry, here: Structure) -> Callable[[Vec], tuple[Expression, Expression]]:
+def on_text(geometry: Geometry, here: Structure) -> Callable[[Vec], Place]:
     """Returns a function from units of the height of a text, or of a drawing, to the frame of `here`."""
     core = view(geometry, here)
-    unit = "height" if geometry.trace is None else "unit"
-    (x, y), height, angle = xy(core["start"]), number(core[unit]), number(core["angle"])
-    along = ex.mul(height, ex.cos(angle)), ex.mul(height, ex.sin(angle))
+    height = number(core["height" if geometry.trace is None else "unit"])
+    start, along = xy(core["start"]), height * ex.towards(number(core["angle"]))
     up = -1.0 if clockwise(geometry, here) else 1.0
-
-    def at(p: Vec) -> tuple[Expression, Expression]:
-        u, v = ex.turned(*along, ex.constant(p[0]), ex.constant(up * p[1]))
-        return ex.add(x, u), ex.add(y, v)
-
-    return at
+    return lambda p: start + Place(ex.constant(p[0]), ex.constant(up * p[1])).turned(along)
 
 
 def defining(geometry: Geometry, here: Structure) -> list[Expression]:
@@ -138,7 +128,7 @@ def defining(geometry: Geometry, here: Structure) -> list[Expression]:
 # A curve of straight lines and cubics gives these (`pieces`), and its box, its ends and its outline follow;
 # any other gives its reach, and `geometry.picturing` makes it of its numbers.
 
-Piece: TypeAlias = tuple[tuple[Expression, Expression], ...]
+Piece: TypeAlias = tuple[Place, ...]
 """The two ends of a straight line, or the four control points of a cubic."""
 
 
@@ -162,8 +152,7 @@ def field(g: Geometry, name: str, here: Structure) -> Value | None:
     core = view(g, here)
     if name in core:
         return core[name]
-    formulas = FORMULAS.get(g.type)
-    if formulas is None:
+    if (formulas := FORMULAS.get(g.type)) is None:
         return None
     if formulas.pieces is not None and name in ("start", "end"):
         at = 0 if name == "start" else -1
@@ -185,18 +174,34 @@ def reach(g: Geometry, here: Structure, side: str) -> Iterable[Expression]:
     return _reach_of(formulas.pieces(g, here), side)
 
 
+class Towards(NamedTuple):
+    """A side of a box: its axis, what lies further out by a length, and the further one of coordinates."""
+
+    axis: int
+    outwards: Callable[[Expression, Expression], Expression]
+    further: str
+
+
+_SIDES = {
+    "left": Towards(0, operator.sub, "minimum"),
+    "right": Towards(0, operator.add, "maximum"),
+    "bottom": Towards(1, operator.sub, "minimum"),
+    "top": Towards(1, operator.add, "maximum"),
+}
+towards = _SIDES.__getitem__
+
+
 def _reach_of(of: Iterable[Piece], side: str) -> list[Expression]:
-    axis, positive = side in ("top", "bottom"), side in ("right", "top")
+    axis, outwards, _ = towards(side)
     found: list[Expression] = []
     for piece in of:
         along = [p[axis] for p in piece]
-        found += [_cubic_extreme(along, positive)] if len(along) == 4 else along
+        found += [_cubic_extreme(along, outwards is operator.add)] if len(along) == 4 else along
     return found
 
 
 def _point(name: str, g: Geometry, here: Structure) -> Value | None:
-    at = view(g, here)["at"]
-    assert isinstance(at, PointVal)
+    at = certain(view(g, here)["at"], PointVal)
     fields: dict[str, Value] = {"x": at.x, "y": at.y, "center": at}
     return fields.get(name)
 
@@ -211,16 +216,16 @@ def _line(name: str, g: Geometry, here: Structure) -> Value | None:
     start, end = core["start"], core["end"]
     match name:
         case "midpoint" | "center":
-            (ax, ay), (bx, by) = xy(start), xy(end)
-            return point(ex.half(ex.add(ax, bx)), ex.half(ex.add(ay, by)))
+            x, y = xy(start) + xy(end)
+            return point(x * 0.5, y * 0.5)
         case "length":
             return length(distance(start, end))
         case "angle":
             return _angle(direction(start, end))
         case "dx":
-            return length(ex.sub(xy(end)[0], xy(start)[0]))
+            return length(xy(end).x - xy(start).x)
         case "dy":
-            return length(ex.sub(xy(end)[1], xy(start)[1]))
+            return length(xy(end).y - xy(start).y)
         case _:
             return None
 
@@ -237,18 +242,16 @@ def _cubic(g: Geometry, here: Structure) -> tuple[Piece]:
 def _cubic_extreme(controls: Sequence[Expression], positive: bool) -> Expression:
     if positive:
         return ex.apply("cubic_max", *controls)
-    return ex.apply("neg", ex.apply("cubic_max", *[ex.apply("neg", c) for c in controls]))
+    return -ex.apply("cubic_max", *[-c for c in controls])
 
 
 def _round(name: str, g: Geometry, here: Structure) -> Value | None:
-    if name == "diameter":
-        return length(ex.mul(number(view(g, here)["radius"]), ex.constant(2.0)))
-    return None
+    return length(number(view(g, here)["radius"]) * 2.0) if name == "diameter" else None
 
 
 def _circle_reach(g: Geometry, here: Structure, side: str) -> Iterator[Expression]:
-    core, outwards = view(g, here), ex.add if side in ("right", "top") else ex.sub
-    yield outwards(xy(core["center"])[side in ("top", "bottom")], number(core["radius"]))
+    core, (axis, outwards, _) = view(g, here), towards(side)
+    yield outwards(xy(core["center"])[axis], number(core["radius"]))
 
 
 def _arc(name: str, g: Geometry, here: Structure) -> Value | None:
@@ -261,12 +264,12 @@ def _arc(name: str, g: Geometry, here: Structure) -> Value | None:
         case "sweep":
             return _angle(sweep(core, is_clockwise))
         case "length":
-            turn = ex.mul(sweep(core, is_clockwise), ex.constant(ex.DEGREE))
-            return length(ex.mul(number(core["radius"]), turn))
+            turn = sweep(core, is_clockwise) * ex.DEGREE
+            return length(number(core["radius"]) * turn)
         case "midpoint":
-            middle = ex.half(sweep(core, is_clockwise))
+            middle = sweep(core, is_clockwise) * 0.5
             start = direction(core["center"], core["start"])
-            angle = ex.sub(start, middle) if is_clockwise else ex.add(start, middle)
+            angle = start - middle if is_clockwise else start + middle
             return polar(core["center"], number(core["radius"]), angle)
         case _:
             return _round(name, g, here)
@@ -277,14 +280,10 @@ _TOWARDS = {"right": 0.0, "top": 90.0, "left": 180.0, "bottom": 270.0}
 
 def _arc_reach(arc: Geometry, here: Structure, side: str) -> Iterator[Expression]:
     """Yields the quadrant point if the arc passes through it, else the further end."""
-    axis, positive = side in ("top", "bottom"), side in ("right", "top")
-    core = view(arc, here)
+    core, (axis, outwards, further) = view(arc, here), towards(side)
     first, turn = _turn(arc, here)
-    reached = ex.apply("mod", ex.sub(ex.constant(_TOWARDS[side]), first), ex.constant(360.0))
-    passes = ex.sub(turn, reached)
-    outwards = ex.add if positive else ex.sub
+    passes = turn - ex.apply("mod", _TOWARDS[side] - first, ex.constant(360.0))
     quadrant = outwards(xy(core["center"])[axis], number(core["radius"]))
-    further = "maximum" if positive else "minimum"
     ends = ex.apply(further, xy(core["start"])[axis], xy(core["end"])[axis])
     yield ex.apply("select", passes, quadrant, ends)
 
@@ -300,12 +299,11 @@ def _turn(arc: Geometry, here: Structure) -> tuple[Expression, Expression]:
 
 def _ellipse_reach(g: Geometry, here: Structure, side: str) -> Iterator[Expression]:
     """Yields centre plus or minus sqrt((rx cos)^2 + (ry sin)^2), the half-width of a turned ellipse."""
-    axis, positive, core = side in ("top", "bottom"), side in ("right", "top"), view(g, here)
-    angle = number(core["angle"])
-    along, across = (ex.sin, ex.cos) if axis else (ex.cos, ex.sin)
-    parts = ex.mul(number(core["rx"]), along(angle)), ex.mul(number(core["ry"]), across(angle))
-    half_width = ex.apply("hypot", *parts)
-    yield ex.apply("add" if positive else "sub", xy(core["center"])[axis], half_width)
+    core, (axis, outwards, _) = view(g, here), towards(side)
+    cos, sin = ex.towards(number(core["angle"]))
+    along, across = (sin, cos) if axis else (cos, sin)
+    half_width = Place(number(core["rx"]) * along, number(core["ry"]) * across).length
+    yield outwards(xy(core["center"])[axis], half_width)
 
 
 def _characters(name: str, g: Geometry, here: Structure) -> Value | None:
@@ -328,11 +326,11 @@ def _text_reach(text: Geometry, here: Structure, side: str) -> Iterator[Expressi
 
         left, bottom, right, top = box_around(text.glyphs)
         for corner in ((left, bottom), (right, bottom), (left, top), (right, top)):
-            yield at(corner)[side in ("top", "bottom")]
+            yield at(corner)[towards(side).axis]
         return
     reaching = _reach_of((tuple(map(at, piece)) for piece in text.silhouette), side)
     if angle.is_constant:
-        furthest = max if side in ("right", "top") else min
+        furthest = max if towards(side).further == "maximum" else min
         yield furthest(reaching, key=lambda reach: reach.value)
     else:
         yield from reaching
@@ -340,7 +338,8 @@ def _text_reach(text: Geometry, here: Structure, side: str) -> Iterator[Expressi
 
 def _trace_reach(g: Geometry, here: Structure, side: str) -> Iterator[Expression]:
     """Yields how far a drawing reaches: a multiple of its unit if its turn is known, else its silhouette."""
-    angle, axis = number(view(g, here)["angle"]), side in ("top", "bottom")
+    core, (axis, outwards, _) = view(g, here), towards(side)
+    angle = number(core["angle"])
     if not angle.is_constant:
         at = on_text(g, here)
         yield from _reach_of((tuple(map(at, piece)) for piece in g.silhouette), side)
@@ -349,11 +348,10 @@ def _trace_reach(g: Geometry, here: Structure, side: str) -> Iterator[Expression
     # The direction of the side as the drawing sees it: turned back, and over if it is mirrored.
     c, s = ex.exact_turn(angle.value)
     across, up = (s, c) if axis else (c, -s)
-    sense = 1.0 if side in ("right", "top") else -1.0
+    sense = 1.0 if outwards is operator.add else -1.0
     over = -1.0 if clockwise(g, here) else 1.0
     reach = sense * g.trace.furthest((sense * across, sense * over * up))
-    core = view(g, here)
-    yield ex.add(xy(core["start"])[axis], ex.mul(number(core["unit"]), ex.constant(reach)))
+    yield xy(core["start"])[axis] + number(core["unit"]) * reach
 
 
 FORMULAS: dict[str, Formulas] = {
@@ -380,73 +378,62 @@ def gauss(count: int) -> tuple[tuple[float, float], ...]:
 
 # --- Motions of the plane that keep shapes: moved, turned, mirrored and scaled, over expressions.
 
-Place = tuple[Expression, Expression]
-
-NOWHERE: Place = (ex.ZERO, ex.ZERO)
-_HALF_TURN = ex.constant(180.0)
+NOWHERE = Place(ex.ZERO, ex.ZERO)
 
 
 @record()
 class Motion:
     """p ↦ to + scale · turned(p - about), where a mirrored motion reflects x before it turns.
 
-    about, to  coordinates in mm in the frame of one structure; `turn` in degrees; cos, sin of it
+    about, to  places in the frame of one structure; `turn` in degrees; `facing` its cosine and sine
     """
 
     about: Place = NOWHERE
     to: Place = NOWHERE
     turn: Expression = ex.ZERO
-    cos: Expression = ex.ONE
-    sin: Expression = ex.ZERO
+    facing: Place = Place(ex.ONE, ex.ZERO)
     scale: Expression = ex.ONE
     mirrored: bool = False
 
-    def place(self, x: Expression, y: Expression) -> Place:
-        u, v = self._from(x, self.about[0]), self._from(y, self.about[1])
-        if self.mirrored:
-            u = ex.apply("neg", u)
-        s, t = ex.turned(self.cos, self.sin, u, v)
-        return ex.add(self.to[0], ex.mul(self.scale, s)), ex.add(self.to[1], ex.mul(self.scale, t))
-
-    @staticmethod
-    def _from(a: Expression, b: Expression) -> Expression:
-        """Returns the difference of two coordinates; exactly 0 for a coordinate and itself."""
-        return ex.ZERO if a is b else ex.sub(a, b)
+    def place(self, at: Place) -> Place:
+        way = Place(*(ex.ZERO if a is b else a - b for a, b in zip(at, self.about, strict=True)))
+        way = way.turned_over if self.mirrored else way
+        return self.to + self.scale * way.turned(self.facing)
 
     def point(self, p: PointVal) -> PointVal:
-        x, y = self.place(*xy(p))
+        x, y = self.place(p.place)
         return PointVal(Num(x, p.x.dimension, p.x.status), Num(y, p.y.dimension, p.y.status))
 
     def direction(self, angle: Expression) -> Expression:
         """Returns a direction in degrees, seen after the motion."""
-        if self.mirrored:
-            return _in_turn(ex.sub(ex.add(self.turn, _HALF_TURN), angle))
-        return _in_turn(ex.add(angle, self.turn))
+        return _in_turn(self.turn + 180.0 - angle) if self.mirrored else _in_turn(angle + self.turn)
 
     def measure(self, value: Expression, dimension: MaybeDimension) -> Expression:
         """Returns a length, an area and the like after the motion: only the scale changes it."""
         for _ in range(dimension.length if dimension else 0):
-            value = ex.mul(self.scale, value)
+            value = self.scale * value
         return value
 
     def frame(self, frame: Frame) -> Frame:
         """Returns the frame of a moved structure; the scale applies to its contents."""
-        x, y = self.place(frame.x, frame.y)
-        turned = ex.sub if self.mirrored else ex.add
-        return Frame(x, y, _in_turn(turned(self.turn, frame.rotation)), frame.mirrored != self.mirrored)
+        turn = self.turn - frame.rotation if self.mirrored else self.turn + frame.rotation
+        return Frame(*self.place(frame.origin), _in_turn(turn), frame.mirrored != self.mirrored)
 
     @property
     def parts(self) -> tuple[Expression, ...]:
         """The numbers that define it."""
-        return (*self.about, *self.to, self.turn, self.cos, self.sin, self.scale)
+        return (*self.about, *self.to, self.turn, *self.facing, self.scale)
 
     @property
     def is_still(self) -> bool:
         """True if it moves nothing."""
         if self.mirrored or not all(p.is_constant for p in self.parts):
             return False
-        stays = [a.value for a in self.about] == [a.value for a in self.to]
-        return stays and self.turn.value % 360.0 == 0.0 and self.scale.value == 1.0
+        return (
+            self.about.written == self.to.written
+            and self.turn.value % 360.0 == 0.0
+            and self.scale.value == 1.0
+        )
 
 
 STILL = Motion()
@@ -455,13 +442,12 @@ STILL = Motion()
 
 def _in_turn(angle: Expression) -> Expression:
     """Returns an angle as one between -180 (left out) and 180 as written."""
-    turns = ex.constant(360.0 * ((180.0 - angle.value) // 360.0))
-    return ex.add(angle, turns)
+    return angle + 360.0 * ((180.0 - angle.value) // 360.0)
 
 
 def opposite(angle: Expression) -> Expression:
     """Returns the opposite direction."""
-    return _in_turn(ex.add(angle, _HALF_TURN))
+    return _in_turn(angle + 180.0)
 
 
 def translation(by: Place) -> Motion:
@@ -469,11 +455,11 @@ def translation(by: Place) -> Motion:
 
 
 def turned(angle: Expression, about: Place = NOWHERE, to: Place | None = None) -> Motion:
-    return Motion(about, to or about, angle, ex.cos(angle), ex.sin(angle))
+    return Motion(about, to or about, angle, ex.towards(angle))
 
 
 def mirrored_at_point(about: Place) -> Motion:
-    return turned(_HALF_TURN, about)
+    return turned(ex.constant(180.0), about)
 
 
 def mirrored_at_line(start: PointVal, end: PointVal) -> Motion:
@@ -481,32 +467,27 @@ def mirrored_at_line(start: PointVal, end: PointVal) -> Motion:
 
     About a line of direction φ it is the reflection of x, then the turn by 2φ + 180°.
     """
-    at = xy(start)
-    (ax, ay), (bx, by) = at, xy(end)
-    turn = _in_turn(ex.add(ex.mul(ex.constant(2.0), direction(start, end)), _HALF_TURN))
+    at, way = start.place, end.place - start.place
+    turn = _in_turn(2.0 * way.direction + 180.0)
     if turn.is_constant:
-        return Motion(at, at, turn, ex.cos(turn), ex.sin(turn), mirrored=True)
-    dx, dy = ex.sub(bx, ax), ex.sub(by, ay)
-    xx, yy, xy_ = ex.apply("square", dx), ex.apply("square", dy), ex.mul(dx, dy)
-    whole = ex.add(xx, yy)
-    cos = ex.div(ex.sub(yy, xx), whole)
-    sin = ex.div(ex.mul(ex.constant(-2.0), xy_), whole)
-    return Motion(at, at, turn, cos, sin, mirrored=True)
+        return Motion(at, at, turn, ex.towards(turn), mirrored=True)
+    xx, yy = ex.apply("square", way.x), ex.apply("square", way.y)
+    cos, sin = (yy - xx) / (xx + yy), -2.0 * (way.x * way.y) / (xx + yy)
+    return Motion(at, at, turn, Place(cos, sin), mirrored=True)
 
 
 def after(first: Motion, second: Motion) -> Motion:
     """Returns one motion followed by another."""
-    way = ex.sub if second.mirrored else ex.add
-    turn = _in_turn(way(second.turn, first.turn))
-    to, scale = second.place(*first.to), ex.mul(second.scale, first.scale)
+    turn = _in_turn(second.turn - first.turn if second.mirrored else second.turn + first.turn)
     is_mirrored = first.mirrored != second.mirrored
-    return Motion(first.about, to, turn, ex.cos(turn), ex.sin(turn), scale, is_mirrored)
+    scale = second.scale * first.scale
+    return Motion(first.about, second.place(first.to), turn, ex.towards(turn), scale, is_mirrored)
 
 
 def of_frame(frame: Frame) -> Motion:
     """Returns the motion from the coordinates of a frame to those of the frame around it."""
     turn = frame.rotation
-    return Motion(NOWHERE, (frame.x, frame.y), turn, ex.cos(turn), ex.sin(turn), mirrored=frame.mirrored)
+    return Motion(NOWHERE, frame.origin, turn, ex.towards(turn), mirrored=frame.mirrored)
 
 
 # --- Shapes and structures that are level until a constraint asks them to turn.

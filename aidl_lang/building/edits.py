@@ -5,17 +5,18 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from functools import partial
-from typing import TypeVar
+from typing import TypeAlias, TypeVar
 
 from aidl_lang.building import expression as ex
 from aidl_lang.building.calls import bound, hoist_values
 from aidl_lang.building.coerce import as_written, whole
 from aidl_lang.building.copies import Copier, centre_of, motion_for
-from aidl_lang.building.curves import DIRECTIONS, STILL, Motion, Place, after, turned, xy
-from aidl_lang.building.evaluate import evaluate, iterate, truth, turn_scope
+from aidl_lang.building.curves import DIRECTIONS, STILL, Motion, after, turned, xy
+from aidl_lang.building.evaluate import evaluate, truth, turns
+from aidl_lang.building.expression import Place
 from aidl_lang.building.model import Geometry, Structure
 from aidl_lang.building.overloads import arranged
-from aidl_lang.building.state import Env, Interpreter, Reach, Scope
+from aidl_lang.building.state import Env, Interpreter, Scope
 from aidl_lang.building.values import (
     NOTHING,
     Array,
@@ -59,6 +60,9 @@ class EditCall:
     indices: tuple[int, ...]
 
 
+Edits: TypeAlias = Sequence[EditCall]
+
+
 def is_edit(it: Interpreter, node: ast.Node, scope: Scope) -> bool:
     """Tells whether a statement's expression is an edit, and not a definition of the program of that name."""
     if not isinstance(node, ast.Call) or _target(node) is None:
@@ -87,10 +91,10 @@ def edits_on(it: Interpreter, name: str, indices: tuple[int, ...], scope: Scope)
     """Returns the edits of a thing being made, in text order: those below it in the bodies around it."""
     found: list[EditCall] = []
     for ahead in reversed(it.ahead):
-        if ahead.scope.declaring() is not scope.declaring():
+        if ahead.env.scope.declaring() is not scope.declaring():
             break
         if name in _edited_names(it, ahead.statements):
-            found += _among(it, ahead.statements[ahead.next :], ahead.scope, (name, indices))
+            found += _among(it, ahead.statements[ahead.next :], ahead.env, (name, indices))
     return found
 
 
@@ -112,28 +116,25 @@ def _edited_names(it: Interpreter, statements: Sequence[ast.Statement]) -> froze
 
 
 def _among(
-    it: Interpreter, statements: Sequence[ast.Statement], scope: Scope, wanted: tuple[str, tuple[int, ...]]
+    it: Interpreter, statements: Sequence[ast.Statement], env: Env, wanted: tuple[str, tuple[int, ...]]
 ) -> Iterator[EditCall]:
     if wanted[0] not in _edited_names(it, statements):
         return
-    env = Env(scope, it.ahead[-1].here, Reach.OWN)
     for statement in statements:
         match statement:
             case ast.ExpressionStatement(ast.Call() as call) if _is_on(it, call, env, wanted):
-                it.edited.add((call, scope.labels))
-                yield EditCall(call, scope, wanted[1])
-            case ast.For(variables, iterable, body) if wanted[0] in _edited_names(it, body.statements):
-                for item in _tried(it, partial(iterate, it, iterable, env)) or ():
-                    it.count_turn(statement)
-                    turn = turn_scope(it, scope, variables, item, statement)
-                    hoist_values(turn, body.statements, env.here)
+                it.edited.add((call, env.scope.labels))
+                yield EditCall(call, env.scope, wanted[1])
+            case ast.For(body=body) if wanted[0] in _edited_names(it, body.statements):
+                for turn in _tried(it, partial(turns, it, statement, env)) or ():
+                    hoist_values(turn, body.statements)
                     yield from _among(it, body.statements, turn, wanted)
             case ast.If(test, then, otherwise):
                 chosen = _tried(it, partial(_chosen, it, test, env))
                 taken = then if chosen else otherwise if chosen is not None else None
                 if taken is not None:
-                    hoist_values(scope, taken.statements, env.here)
-                    yield from _among(it, taken.statements, scope, wanted)
+                    hoist_values(env, taken.statements)
+                    yield from _among(it, taken.statements, env, wanted)
 
 
 def _chosen(it: Interpreter, test: ast.Expression, env: Env) -> bool:
@@ -159,28 +160,22 @@ def _tried(it: Interpreter, action: Callable[[], T]) -> T | None:
 
 
 def motion_of(
-    it: Interpreter,
-    edits: Sequence[EditCall],
-    thing: Value,
-    centre: Place,
-    here: Structure,
-    placed: Motion = STILL,
+    it: Interpreter, edits: Edits, thing: Value, centre: Place, here: Structure, placed: Motion = STILL
 ) -> Motion:
     """Returns all edits as one motion after that of `at`; one that fails is reported and changes nothing."""
     motion = placed
     for edit in edits:
-        place = motion.place(*centre)
+        place = motion.place(centre)
         now = thing
         if motion is not STILL and isinstance(thing, Geometry):
             now = Copier(it, here, motion).geometry(thing)
-        step = _step(it, edit, now, place, here)
-        if step is not None:
+        if (step := _step(it, edit, now, place, here)) is not None:
             motion = after(motion, step)
     return motion
 
 
 def _step(it: Interpreter, edit: EditCall, thing: Value, centre: Place, here: Structure) -> Motion | None:
-    node, env = edit.call, Env(_seeing(it, edit, thing), here, Reach.OWN)
+    node, env = edit.call, Env(_seeing(it, edit, thing), here)
     nodes = [node.receiver] if node.receiver is not None else []
     nodes += [a.value for a in node.arguments]
     target = _target(node)
@@ -200,8 +195,7 @@ def _step(it: Interpreter, edit: EditCall, thing: Value, centre: Place, here: St
             it.report("E0311", f"`{node.callee.text}` {chosen[0].reason}", node)
         return None
     taken, places = arranged(chosen, values, nodes)
-    arguments = bound(it, chosen, taken, places, env)
-    if arguments is None:
+    if (arguments := bound(it, chosen, taken, places, env)) is None:
         return None
     arguments = {name: v if name == "x" else as_written(v) for name, v in arguments.items()}
     return motion_for(it, arguments, lambda: centre, node)
@@ -275,7 +269,7 @@ def referred(value: PointVal | Num) -> str | None:
 
 
 def frame_edited(
-    it: Interpreter, edits: Sequence[EditCall], s: Structure, at: PointVal, turn: Num | None
+    it: Interpreter, edits: Edits, s: Structure, at: PointVal, turn: Num | None
 ) -> tuple[PointVal, Num | None]:
     """Returns the place of a structure, with the edits below it applied."""
     assert s.parent is not None
@@ -285,15 +279,14 @@ def frame_edited(
         hint = f"make a copy of another size: `{s.name}_2 = copy({s.name}, scale: …, at: …)`"
         it.report("E0334", message, edits[0].call, hints=[hint])
         return at, turn
-    source = referred(at)
-    if source is not None:
+    if (source := referred(at)) is not None:
         follows(it, edits[0].call, s.name, source)
         return at, turn
     moved = motion.point(at)
     if motion.turn.value % 360.0 == 0.0:
         return moved, turn
     written = turn or number(0.0, ANGLE)
-    return moved, replace(written, expression=ex.add(written.expression, motion.turn))
+    return moved, replace(written, expression=written.expression + motion.turn)
 
 
 def check_edit(it: Interpreter, call: ast.Call, env: Env) -> None:
@@ -326,8 +319,7 @@ def check_edit(it: Interpreter, call: ast.Call, env: Env) -> None:
 
 # --- The making of geometry that is edited: with other arguments, or else turned as a whole.
 
-_CLOSE = 1e-9
-"""The part of the size of the shape by which two numbers may differ and count as one."""
+_CLOSE = 1e-9  # the part of the size of the shape by which two numbers may differ and count as one
 
 
 @record()
@@ -361,7 +353,7 @@ def edited(
     it: Interpreter,
     node: ast.Assign,
     value: Value,
-    edits: Sequence[EditCall],
+    edits: Edits,
     env: Env,
     placed: GeometryPlacement | None = None,
 ) -> Value:
@@ -391,7 +383,7 @@ class _Editing:
     it: Interpreter
     node: ast.Assign
     first: Geometry
-    edits: Sequence[EditCall]
+    edits: Edits
     env: Env
     cause: ast.Node
     placed: GeometryPlacement | None = None
@@ -399,7 +391,7 @@ class _Editing:
 
     def run(self) -> Value:
         centre = centre_of(self.it, self.first, self.cause, self.env)
-        written = ex.constant(centre[0].value), ex.constant(centre[1].value)
+        written = Place(*map(ex.constant, centre.written))
         start = self.placed.motion if self.placed is not None else STILL
         motion = motion_of(self.it, self.edits, self.first, written, self.env.here, start)
         if (made := self._by_arguments(motion)) is not None:
@@ -407,12 +399,11 @@ class _Editing:
         if self.refers is not None:
             follows(self.it, self.cause, self.node.name.text, self.refers)
             return self.first
-        unturned = Motion(written, motion.place(*written), scale=motion.scale)
+        unturned = Motion(written, motion.place(written), scale=motion.scale)
         if (made := self._by_arguments(unturned)) is not None:
             centre = centre_of(self.it, made, self.cause, self.env)
             return self._as_whole(made, replace(motion, about=centre, to=centre, scale=ex.ONE))
-        away = [ex.sub(b, a) for a, b in zip(written, motion.place(*written), strict=True)]
-        to = ex.add(centre[0], away[0]), ex.add(centre[1], away[1])
+        to = centre + (motion.place(written) - written)
         return self._as_whole(self.first, replace(motion, about=centre, to=to))
 
     def _as_whole(self, made: Geometry, motion: Motion) -> Geometry:
@@ -421,7 +412,7 @@ class _Editing:
         asked = self.placed.turn if self.placed is not None else None
         if asked is not None and asked.status is Exactness.GUESS:
             turn = self.it.unknown(motion.turn.value, made, "rotation", dimension=ANGLE)
-            motion = replace(motion, turn=turn, cos=ex.cos(turn), sin=ex.sin(turn))
+            motion = replace(motion, turn=turn, facing=ex.towards(turn))
         turned = Copier(self.it, self.env.here, motion, span=made.span).geometry(made)
         turned.source = None  # to the author it is what was written, and no copy
         return turned
@@ -477,8 +468,7 @@ class _Editing:
 
 def _defaults(binding: Binding) -> Iterator[tuple[str, Value]]:
     """Yields the omitted positions and directions of a call with their defaults."""
-    definition = binding.signature.node
-    if definition is None:
+    if (definition := binding.signature.node) is None:
         for name, kind, optional in binding.signature.parameters:
             if optional and isinstance(kind, PointType):
                 yield name, _at(0.0, 0.0)

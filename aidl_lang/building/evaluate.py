@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+import operator
+from collections.abc import Callable, Iterator
 from functools import partial
 
 from aidl_lang.building import expression as ex
@@ -104,15 +105,8 @@ def _for_arguments(it: Interpreter, node: ast.ForArguments, env: Env) -> Value:
 def _of_turns(
     it: Interpreter, node: ast.Comprehension | ast.ForArguments, env: Env, made: Callable[[Env], list[Value]]
 ) -> Value:
-    turns = iterate(it, node.iterable, env)
-    if turns is None:
-        return NOTHING
-    found: list[Value] = []
-    for item in turns:
-        it.count_turn(node)
-        scope = turn_scope(it, env.scope, node.variables, item, node)
-        found += made(Env(scope, env.here, env.reach))
-    return _listed(found)
+    run = turns(it, node, env)
+    return NOTHING if run is None else _listed([value for inner in run for value in made(inner)])
 
 
 def _if_arguments(it: Interpreter, node: ast.IfArguments, env: Env) -> Value:
@@ -126,7 +120,7 @@ def _if_arguments(it: Interpreter, node: ast.IfArguments, env: Env) -> Value:
 def _arguments_of(it: Interpreter, block: ast.ArgumentBlock, env: Env) -> list[Value]:
     """Returns the arguments in a block; of a list among them its members, as of one among the others."""
     scope = Scope(env.scope, env.scope.container, turn=True, labels=env.scope.labels)
-    inner = Env(scope, env.here, env.reach)
+    inner = env.within(scope)
     found: list[Value] = []
     for item in block.items:
         if isinstance(item, ast.Let):
@@ -144,6 +138,21 @@ def iterate(it: Interpreter, node: ast.Expression, env: Env) -> list[Value] | No
     if items is None and not isinstance(value, RangeVal | Nothing):
         it.misfit(rules.no_run(type_of(value)), node)
     return list(items) if items is not None else None
+
+
+def turns(
+    it: Interpreter, node: ast.For | ast.Comprehension | ast.ForArguments, env: Env
+) -> Iterator[Env] | None:
+    """Returns the environments of the turns of a loop; None after an error."""
+    items = iterate(it, node.iterable, env)
+    return None if items is None else (_turn(it, node, item, env) for item in items)
+
+
+def _turn(
+    it: Interpreter, node: ast.For | ast.Comprehension | ast.ForArguments, item: Value, env: Env
+) -> Env:
+    it.count_turn(node)
+    return env.within(turn_scope(it, env.scope, node.variables, item, node))
 
 
 def turn_scope(
@@ -184,8 +193,7 @@ def truth(it: Interpreter, value: Value, node: ast.Node) -> bool:
 
 def _name(it: Interpreter, node: ast.Name, env: Env) -> Value:
     name = it.spelled(node)
-    found = env.scope.find(name)
-    if found is not None:
+    if (found := env.scope.find(name)) is not None:
         return read(it, found.values[name], node, env)
     for scope in env.scope.chain():
         if (branch := scope.unbuilt.get(name)) is not None:
@@ -204,12 +212,10 @@ def _index(it: Interpreter, node: ast.Index, env: Env) -> Value:
         return NOTHING
     if isinstance(value, RecordVal) and isinstance(index, TextVal):
         return entry(it, value, index.value, node.index)
-    items = members(value)
-    if items is None:
+    if (items := members(value)) is None:
         it.misfit(rules.no_members(shown(node.value), type_of(value)), node)
         return NOTHING
-    position = whole(it, index, node.index, "an index")
-    if position is None:
+    if (position := whole(it, index, node.index, "an index")) is None:
         return NOTHING
     if isinstance(value, Array):
         if (position,) in value.members:
@@ -239,7 +245,7 @@ def _unary(it: Interpreter, node: ast.Unary, env: Env) -> Value:
 
 
 def _negative(value: Num) -> Num:
-    return Num(ex.apply("neg", value.expression), value.dimension, value.status)
+    return Num(-value.expression, value.dimension, value.status)
 
 
 def _binary(it: Interpreter, node: ast.Binary, env: Env) -> Value:
@@ -288,10 +294,10 @@ _DIMENSION: dict[str, Callable[[units.MaybeDimension, units.MaybeDimension], uni
     "/": units.divide,
 }
 _OPERATION: dict[str, Callable[[ex.Expression, ex.Expression], ex.Expression]] = {
-    "+": ex.add,
-    "-": ex.sub,
-    "*": ex.mul,
-    "/": ex.div,
+    "+": operator.add,
+    "-": operator.sub,
+    "*": operator.mul,
+    "/": operator.truediv,
     "^": partial(ex.apply, "power"),
 }
 
@@ -303,8 +309,7 @@ def arithmetic(it: Interpreter, op: str, a: Num, b: Num, node: ast.Node) -> Num 
         if op in "+-" and a.dimension is b.dimension:
             dimension = a.dimension
         elif op == "^":
-            exponent = constant(it, b, node, "an exponent")
-            if exponent is None:
+            if (exponent := constant(it, b, node, "an exponent")) is None:
                 return NOTHING
             dimension = units.power(a.dimension, exponent)
         else:
@@ -355,8 +360,8 @@ def _no_value(it: Interpreter, node: ast.Node, why: str, *hints: str) -> Nothing
 def _comparison(it: Interpreter, node: ast.Comparison, env: Env) -> Value:
     values = [evaluate(it, operand, env) for operand in node.operands]
     result: Value = True
-    for i, operator in enumerate(node.operators):
-        pair = compare(it, operator, values[i], values[i + 1], node, env, node.operands[i : i + 2])
+    for i, relation in enumerate(node.operators):
+        pair = compare(it, relation, values[i], values[i + 1], node, env, node.operands[i : i + 2])
         result = conjunction(it, "and", result, pair, node)
     return result
 
@@ -370,8 +375,7 @@ def _membership(it: Interpreter, node: ast.Membership, env: Env) -> Value:
         low = compare(it, ">=", value, container.start, node, env, sides)
         high = compare(it, "<" if container.exclusive else "<=", value, container.end, node, env, sides)
         return conjunction(it, "and", low, high, node)
-    items = members(container)
-    if items is None:
+    if (items := members(container)) is None:
         it.misfit(rules.needed("a range or a list", type_of(container)), node.container)
         return NOTHING
     result: Value = False

@@ -9,14 +9,17 @@ trigonometric node and its argument; every number of the language is in millimet
 from __future__ import annotations
 
 import math
+import operator
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import field
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, NamedTuple, Protocol, TypeAlias, TypeVar
 
 from aidl_lang.common.records import record
 
 if TYPE_CHECKING:
     from aidl_lang.building.model import Geometry, Structure
+
+T = TypeVar("T")
 
 DEGREE = math.pi / 180.0
 
@@ -137,6 +140,71 @@ class Expression:
     def is_constant(self) -> bool:
         return self.op == "constant"
 
+    def __add__(self, other: Expression | float) -> Expression:
+        if not isinstance(other, Expression):
+            other = constant(other)
+        if other.op == "constant":
+            if self.op == "constant":
+                return Expression("constant", (), self.value + other.value)
+            if other.value == 0.0:
+                return self
+        elif self.op == "constant" and self.value == 0.0:
+            return other
+        return Expression("add", (self, other), self.value + other.value, self.is_open or other.is_open)
+
+    def __sub__(self, other: Expression | float) -> Expression:
+        if not isinstance(other, Expression):
+            other = constant(other)
+        if other.op == "constant":
+            if self.op == "constant":
+                return Expression("constant", (), self.value - other.value)
+            if other.value == 0.0:
+                return self
+        return Expression("sub", (self, other), self.value - other.value, self.is_open or other.is_open)
+
+    def __mul__(self, other: Expression | float) -> Expression:
+        if not isinstance(other, Expression):
+            if isinstance(other, Place):
+                return NotImplemented
+            other = constant(other)
+        if self.op == "constant":
+            if other.op == "constant":
+                return Expression("constant", (), self.value * other.value)
+            factor, rest = self.value, other
+        else:
+            factor, rest = (other.value, self) if other.op == "constant" else (math.nan, self)
+        if factor == 1.0:
+            return rest
+        if factor == 0.0:
+            return ZERO
+        return Expression("mul", (self, other), self.value * other.value, self.is_open or other.is_open)
+
+    def __truediv__(self, other: Expression | float) -> Expression:
+        if not isinstance(other, Expression):
+            other = constant(other)
+        value = EVALUATE["div"](self.value, other.value)
+        if other.op == "constant":
+            if self.op == "constant":
+                return Expression("constant", (), value)
+            if other.value == 1.0:
+                return self
+        return Expression("div", (self, other), value, self.is_open or other.is_open)
+
+    def __radd__(self, other: float) -> Expression:
+        return constant(other) + self
+
+    def __rsub__(self, other: float) -> Expression:
+        return constant(other) - self
+
+    def __rmul__(self, other: float) -> Expression:
+        return constant(other) * self
+
+    def __rtruediv__(self, other: float) -> Expression:
+        return constant(other) / self
+
+    def __neg__(self) -> Expression:
+        return apply("neg", self)
+
     def __repr__(self) -> str:
         inner = ", ".join(map(repr, self.args)) or f"{self.payload or self.value}"
         return f"{self.op}({inner})"
@@ -144,6 +212,45 @@ class Expression:
 
 def constant(value: float) -> Expression:
     return Expression("constant", (), float(value))
+
+
+class Place(NamedTuple):
+    """A point of the plane, or a way in it."""
+
+    x: Expression
+    y: Expression
+
+    def __add__(self, other: Place) -> Place:  # type: ignore[override]
+        return Place(self.x + other.x, self.y + other.y)
+
+    def __sub__(self, other: Place) -> Place:
+        return Place(self.x - other.x, self.y - other.y)
+
+    def __rmul__(self, factor: Expression | float) -> Place:  # type: ignore[override]
+        return Place(factor * self.x, factor * self.y)
+
+    @property
+    def turned_over(self) -> Place:
+        """It reflected at the vertical axis."""
+        return Place(-self.x, self.y)
+
+    def turned(self, by: Place) -> Place:
+        """Returns it turned by an angle, of which `by` are the cosine and the sine."""
+        return Place(by.x * self.x - by.y * self.y, by.y * self.x + by.x * self.y)
+
+    @property
+    def direction(self) -> Expression:
+        """The direction of a way in degrees."""
+        return atan2(self.y, self.x)
+
+    @property
+    def length(self) -> Expression:
+        return apply("hypot", self.x, self.y)
+
+    @property
+    def written(self) -> tuple[float, float]:
+        """Where it is at the first guesses."""
+        return self.x.value, self.y.value
 
 
 def literal(value: float, written: object) -> Expression:
@@ -238,78 +345,35 @@ def apply(op: str, *args: Expression) -> Expression:
     return Expression("constant", (), value)
 
 
-def add(a: Expression, b: Expression) -> Expression:
-    if b.op == "constant":
-        if a.op == "constant":
-            return Expression("constant", (), a.value + b.value)
-        if b.value == 0.0:
-            return a
-    elif a.op == "constant" and a.value == 0.0:
-        return b
-    return Expression("add", (a, b), a.value + b.value, a.is_open or b.is_open)
-
-
-def sub(a: Expression, b: Expression) -> Expression:
-    if b.op == "constant":
-        if a.op == "constant":
-            return Expression("constant", (), a.value - b.value)
-        if b.value == 0.0:
-            return a
-    return Expression("sub", (a, b), a.value - b.value, a.is_open or b.is_open)
-
-
-def mul(a: Expression, b: Expression) -> Expression:
-    if a.op == "constant":
-        if b.op == "constant":
-            return Expression("constant", (), a.value * b.value)
-        factor, other = a.value, b
-    else:
-        factor, other = (b.value, a) if b.op == "constant" else (math.nan, a)
-    if factor == 1.0:
-        return other
-    if factor == 0.0:
-        return ZERO
-    return Expression("mul", (a, b), a.value * b.value, a.is_open or b.is_open)
-
-
-def div(a: Expression, b: Expression) -> Expression:
-    value = EVALUATE["div"](a.value, b.value)
-    if b.op == "constant":
-        if a.op == "constant":
-            return Expression("constant", (), value)
-        if b.value == 1.0:
-            return a
-    return Expression("div", (a, b), value, a.is_open or b.is_open)
-
-
-_FOLDED: dict[str, Callable[..., Expression]] = {"add": add, "sub": sub, "mul": mul, "div": div}
+_FOLDED: dict[str, Callable[..., Expression]] = {
+    "add": operator.add,
+    "sub": operator.sub,
+    "mul": operator.mul,
+    "div": operator.truediv,
+}
 """The operations of most nodes, each with its own folding."""
-
-
-def half(a: Expression) -> Expression:
-    return mul(a, constant(0.5))
 
 
 def sin(degrees: Expression) -> Expression:
     if degrees.is_constant:
         return constant(exact_turn(degrees.value)[1])
-    return apply("sin", mul(degrees, constant(DEGREE)))
+    return apply("sin", degrees * DEGREE)
 
 
 def cos(degrees: Expression) -> Expression:
     if degrees.is_constant:
         return constant(exact_turn(degrees.value)[0])
-    return apply("cos", mul(degrees, constant(DEGREE)))
+    return apply("cos", degrees * DEGREE)
 
 
 def atan2(y: Expression, x: Expression) -> Expression:
     """Returns the direction of (x, y) in degrees."""
-    return mul(apply("atan2", y, x), constant(1.0 / DEGREE))
+    return apply("atan2", y, x) * (1.0 / DEGREE)
 
 
-def turned(c: Expression, s: Expression, x: Expression, y: Expression) -> tuple[Expression, Expression]:
-    """Returns coordinates turned by the angle with this cosine and sine."""
-    return sub(mul(c, x), mul(s, y)), add(mul(s, x), mul(c, y))
+def towards(degrees: Expression) -> Place:
+    """Returns the way of length 1 in a direction: the cosine and the sine of it."""
+    return Place(cos(degrees), sin(degrees))
 
 
 def exact_turn(degrees: float) -> tuple[float, float]:
@@ -358,6 +422,34 @@ def unknowns(roots: Iterable[Expression]) -> Iterator[Unknown]:
                 stack.extend(node.args)
 
 
+Leaf: TypeAlias = Callable[[Expression], T]
+Operations: TypeAlias = Mapping[str, Callable[..., T]]
+
+
+def folded(root: Expression, known: dict[Expression, T], make: Operations[T], leaf: Leaf[T]) -> T:
+    """Returns what an expression comes to: each node below it is worked out once, and then `known`."""
+    stack = [root]
+    while stack:
+        node = stack[-1]
+        if node in known:
+            pass
+        elif args := node.args:
+            if missing := [a for a in args if a not in known]:
+                stack += missing
+                continue
+            known[node] = make[node.op](*[known[a] for a in args])
+        elif node.op == "lazy":
+            inner: Expression = node.payload.spelled_out  # type: ignore[attr-defined]
+            if inner not in known:
+                stack.append(inner)
+                continue
+            known[node] = known[inner]
+        else:
+            known[node] = leaf(node)
+        stack.pop()
+    return known[root]
+
+
 @record(frozen=False)
 class Evaluator:
     """An evaluator of expressions at given values of the unknowns, each node once.
@@ -370,27 +462,7 @@ class Evaluator:
     _memo: dict[Expression, float] = field(default_factory=dict)
 
     def __call__(self, root: Expression) -> float:
-        memo = self._memo
-        stack = [root]
-        while stack:
-            node = stack[-1]
-            if node in memo:
-                stack.pop()
-                continue
-            args = node.args
-            if node.op == "lazy":
-                args = (node.payload.spelled_out,)  # type: ignore[attr-defined]
-            if missing := [a for a in args if a not in memo]:
-                stack += missing
-                continue
-            stack.pop()
-            if not args:
-                memo[node] = self._leaf(node)
-            elif node.op == "lazy":
-                memo[node] = memo[args[0]]
-            else:
-                memo[node] = EVALUATE[node.op](*[memo[a] for a in args])
-        return memo[root]
+        return folded(root, self._memo, EVALUATE, self._leaf)
 
     def _leaf(self, node: Expression) -> float:
         if node.op == "unknown":

@@ -12,6 +12,7 @@ from aidl_lang.building import expression as ex
 from aidl_lang.building.boxes import spelled_out
 from aidl_lang.building.coerce import as_point, as_text, as_written, constant, look, numeric
 from aidl_lang.building.construct import part as traced_part
+from aidl_lang.building.curves import xy
 from aidl_lang.building.expression import DEGREE, Expression
 from aidl_lang.building.model import Assertion, Condition, Geometry, Measurement, Structure
 from aidl_lang.building.outlines import OPERATIONS
@@ -27,6 +28,7 @@ from aidl_lang.building.values import (
     RecordVal,
     TextVal,
     Value,
+    certain,
     kind_of,
     members,
     number,
@@ -70,16 +72,12 @@ def _convex_corners(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> 
     if given_one_by_one or any(edge.type != "line" for edge in edges):
         return _NONE
     starts, ends = ([look(it, edge, node, env)[name] for edge in edges] for name in ("start", "end"))
-    at = [_at(p) for p in starts]
+    at = [xy(p).written for p in starts]
     closed = all(
-        math.dist(_at(p), q) < 1e-9 * math.dist(at[0], q) + 1e-9 for p, q in zip(ends, _next(at), strict=True)
+        math.dist(xy(p).written, q) < 1e-9 * math.dist(at[0], q) + 1e-9
+        for p, q in zip(ends, _next(at), strict=True)
     )
     return ListVal(tuple(starts)) if closed and _is_convex(at) else _NONE
-
-
-def _at(point: Value) -> tuple[float, float]:
-    assert isinstance(point, PointVal)
-    return point.x.value, point.y.value
 
 
 def _is_convex(corners: Sequence[tuple[float, float]]) -> bool:
@@ -98,9 +96,7 @@ def _next(items: Sequence[tuple[float, float]]) -> Sequence[tuple[float, float]]
 
 def _refuse(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
     """Reports that a definition of the library makes no sense of its arguments."""
-    why = a["why"]
-    assert isinstance(why, TextVal)
-    it.refuse(node, why.value)
+    it.refuse(node, certain(a["why"], TextVal).value)
     return NOTHING
 
 
@@ -112,15 +108,13 @@ def color_of(it: Interpreter, values: Sequence[Value], node: ast.Node) -> str | 
     plain: list[str | float] = []
     for value in values:
         if isinstance(value, Num):
-            known = constant(it, value, node, "a colour")
-            if known is None:
+            if (known := constant(it, value, node, "a colour")) is None:
                 return None
             plain.append(known)
         else:
             text = as_text(value)
             plain.append(text if text is not None else kind_of(value))
-    color = css_color(plain)
-    if color is None:
+    if (color := css_color(plain)) is None:
         _unknown(it, plain, node)
     return color
 
@@ -169,8 +163,7 @@ def _of_one(
     name: str = "value",
 ) -> Function:
     def function(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
-        value = numeric(it, a[name], node, env)
-        if value is None:
+        if (value := numeric(it, a[name], node, env)) is None:
             return NOTHING
         try:
             result = dimension(value.dimension)
@@ -188,7 +181,7 @@ def _of_angle(op: Callable[[Expression], Expression]) -> Function:
 
 def _to_angle(op: str) -> Function:
     degrees = ex.constant(1 / DEGREE)
-    return _of_one(lambda value: ex.mul(ex.apply(op, value), degrees), lambda _: ANGLE)
+    return _of_one(lambda value: ex.apply(op, value) * degrees, lambda _: ANGLE)
 
 
 def _atan2(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
@@ -202,15 +195,13 @@ def _hypot(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
     x, y = numeric(it, a["a"], node, env), numeric(it, a["b"], node, env)
     if x is None or y is None:
         return NOTHING
-    kind = _common(it, [x, y], node)
-    if kind is None:
+    if (kind := _common(it, [x, y], node)) is None:
         return NOTHING
     return _checked(it, Num(ex.apply("hypot", x.expression, y.expression), *kind), node)
 
 
 def _numbers(it: Interpreter, a: Arguments, name: str, node: ast.Call, env: Env) -> list[Num] | None:
-    items = members(a[name])
-    if items is None:
+    if (items := members(a[name])) is None:
         it.report("E0302", f"`{node.callee.text}` wants numbers or a list of them", node)
         return None
     found = [numeric(it, item, node, env) for item in items]
@@ -258,7 +249,7 @@ def _sum(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
 def _total(values: list[Num], dimension: MaybeDimension) -> Num:
     total, status = ex.ZERO, Exactness.NUMBER
     for value in values:
-        total, status = ex.add(total, value.expression), max(status, value.status)
+        total, status = total + value.expression, max(status, value.status)
     return Num(total, dimension, status)
 
 
@@ -290,9 +281,8 @@ def _len(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
 
 
 def _choice(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
-    word = a["word"]
+    word = certain(a["word"], TextVal)
     words = dict.fromkeys(w.value for w in members(a["words"]) or () if isinstance(w, TextVal))
-    assert isinstance(word, TextVal)
     meant = find(word.value, words) or find(_SAME_WORD.get(word.value, ""), words)
     if meant is None:
         hints = did_you_mean(f'"{like}"' for like in nearest(word.value, words))
@@ -352,8 +342,7 @@ def _where(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
     test, yes, no = (numeric(it, a[name], node, env) for name in ("value", "positive", "negative"))
     if test is None or yes is None or no is None:
         return NOTHING
-    kind = _common(it, [yes, no], node)
-    if kind is None:
+    if (kind := _common(it, [yes, no], node)) is None:
         return NOTHING
     status = max(kind[1], test.status)
     return Num(ex.apply("select", test.expression, yes.expression, no.expression), kind[0], status)
@@ -396,8 +385,7 @@ def _centroid(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
         foreseen = formula(area)
         assert foreseen is not None
         size = Num(ex.apply("abs", foreseen), AREA)  # it may turn over
-        drawn = compare_numbers(it, "==", size, Num(ex.measure(area), AREA), node)
-        assert isinstance(drawn, Condition)
+        drawn = certain(compare_numbers(it, "==", size, Num(ex.measure(area), AREA), node), Condition)
         it.assertions.append(Assertion(env.here, drawn, OTHERWISE, node.span.one_line, where))
     return point(*found)
 
@@ -416,7 +404,7 @@ def _ink(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
 FUNCTIONS: dict[str, Function] = {
     "sin": _of_angle(ex.sin),
     "cos": _of_angle(ex.cos),
-    "tan": _of_angle(lambda angle: ex.apply("tan", ex.mul(angle, ex.constant(DEGREE)))),
+    "tan": _of_angle(lambda angle: ex.apply("tan", angle * DEGREE)),
     "asin": _to_angle("asin"),
     "acos": _to_angle("acos"),
     "atan": _of_one(lambda value: ex.atan2(value, ex.ONE), lambda _: ANGLE),

@@ -10,7 +10,7 @@ from aidl_lang.building.boxes import SIDES, Box, foreseen, unmoved, with_measure
 from aidl_lang.building.calls import hoist_values
 from aidl_lang.building.coerce import as_point, numeric
 from aidl_lang.building.curves import ask_to_turn, defining
-from aidl_lang.building.evaluate import evaluate, iterate, truth, turn_scope
+from aidl_lang.building.evaluate import evaluate, truth, turns
 from aidl_lang.building.model import (
     Assertion,
     Comparison,
@@ -20,7 +20,7 @@ from aidl_lang.building.model import (
     Measurement,
     Structure,
 )
-from aidl_lang.building.state import Env, Interpreter, LetBinding, Reach, Scope
+from aidl_lang.building.state import Env, Interpreter, LetBinding, Reach
 from aidl_lang.building.values import (
     Array,
     ListVal,
@@ -88,8 +88,7 @@ def record_dimension(it: Interpreter, node: ast.Call, env: Env) -> None:
         return
     things = measured(node)
     values = [evaluate(it, thing, env) for thing in things]
-    reason = next(_reasons(things, values), "")
-    if reason:
+    if reason := next(_reasons(things, values), ""):
         hint = "as in `dimension(body.left, eye.center)`, `dimension(a.x, b.x)` or `dimension(rim)`"
         it.report("E0590", f"this dimension measures nothing: {reason}", node, hints=[hint])
         return
@@ -293,9 +292,7 @@ def _impose_condition(said: Wording, condition: Condition, weight: float | None)
 def _with_foreseen_boxes(
     said: Wording, comparisons: list[Comparison], weight: float | None
 ) -> list[Comparison]:
-    """Returns comparisons with the boxes of outlines made of others as they can be foreseen; they are looked
-    at again in the drawing, but for a wish.
-    """
+    """Returns comparisons with boxes as they can be foreseen; the drawing is looked at but for a wish."""
     measured = _measurements(comparisons)
     if measured and weight is None:
         (outline,) = measured[0].of
@@ -425,8 +422,7 @@ def _held(it: Interpreter, node: ast.Call, env: Env) -> Value:
         value = evaluate(it, argument, env)
         if isinstance(value, Nothing):
             return value
-        numbers = list(_numbers(it, value, argument, env))
-        if not numbers:
+        if not (numbers := list(_numbers(it, value, argument, env))):
             it.report("E0321", f"{kind_of(value)} has nothing to hold", argument)
         found += [compare_numbers(it, "==", n, number(n.value, n.dimension), node) for n in numbers]
     return all_of(found)
@@ -437,8 +433,7 @@ def _numbers(it: Interpreter, value: Value, node: ast.Expression, env: Env) -> I
         case Num() | PointVal():
             yield from numbers_of(value)
         case Geometry():
-            at = as_point(it, value, node, env)
-            if at is not None:
+            if (at := as_point(it, value, node, env)) is not None:
                 yield from numbers_of(at)
             else:
                 yield from (Num(e, LENGTH) for e in defining(value, env.here))
@@ -456,20 +451,19 @@ def _numbers(it: Interpreter, value: Value, node: ast.Expression, env: Env) -> I
 # --- Constraints, preferences and assertions, read when the structure that holds them is whole.
 
 
-def read_constraint(it: Interpreter, node: ast.Statement, scope: Scope, here: Structure) -> None:
+def read_constraint(it: Interpreter, node: ast.Statement, env: Env) -> None:
     match node:
         case ast.Constrain(items=items):
-            _read_items(it, items.statements, scope, here)
+            _read_items(it, items.statements, env)
         case ast.ExpressionStatement(value=value):
-            impose(it, value, Env(scope, here, Reach.SUBTREE))
+            impose(it, value, env)
         case ast.Prefer():
-            _prefer(it, node, scope, here)
+            _prefer(it, node, env)
         case ast.Assert():
-            record_assertion(it, node, Env(scope, here, Reach.READ))
+            record_assertion(it, node, env.reaching(Reach.READ))
 
 
-def _prefer(it: Interpreter, node: ast.Prefer, scope: Scope, here: Structure) -> None:
-    env = Env(scope, here, Reach.SUBTREE)
+def _prefer(it: Interpreter, node: ast.Prefer, env: Env) -> None:
     weight = 1.0
     if node.weight is not None:
         found = numeric(it, evaluate(it, node.weight, env), node.weight, env)
@@ -481,26 +475,23 @@ def _prefer(it: Interpreter, node: ast.Prefer, scope: Scope, here: Structure) ->
     impose(it, node.value, env, weight)
 
 
-def _read_items(it: Interpreter, statements: Sequence[ast.Statement], scope: Scope, here: Structure) -> None:
-    env = Env(scope, here, Reach.SUBTREE)
-    hoist_values(scope, statements, here)
+def _read_items(it: Interpreter, statements: Sequence[ast.Statement], env: Env) -> None:
+    hoist_values(env, statements)
     for node in statements:
         match node:
             case ast.For():
-                for item in iterate(it, node.iterable, env) or ():
-                    it.count_turn(node)
-                    turn = turn_scope(it, scope, node.variables, item, node)
-                    _read_items(it, node.body.statements, turn, here)
+                for turn in turns(it, node, env) or ():
+                    _read_items(it, node.body.statements, turn)
             case ast.If():
                 test = evaluate(it, node.test, env)
                 if not isinstance(test, Nothing):
                     chosen = node.then if truth(it, test, node.test) else node.otherwise
-                    _read_items(it, chosen.statements if chosen else (), scope, here)
+                    _read_items(it, chosen.statements if chosen else (), env)
             case ast.Equation():
                 it.report("N0501", "`=` inside `constrain` is read as `==`", node)
                 if node not in it.program.rejected:
                     impose(it, node.meant, env)
             case ast.Assign():
-                scope.values[node.name.text] = LetBinding(node.value, scope)
+                env.scope.values[node.name.text] = LetBinding(node.value, env.scope)
             case _:
-                read_constraint(it, node, scope, here)
+                read_constraint(it, node, env)

@@ -7,7 +7,7 @@ from pathlib import PurePosixPath
 
 from aidl_lang.building.coerce import constant
 from aidl_lang.building.state import Arguments, Interpreter
-from aidl_lang.building.values import Num, TextVal, kind_of, number
+from aidl_lang.building.values import Num, TextVal, certain, kind_of, number
 from aidl_lang.checking.units import LENGTH, PLAIN
 from aidl_lang.common import lettering
 from aidl_lang.common.font_files import FontError
@@ -65,8 +65,7 @@ def _broken(name: str, reason: FontError) -> NoFontError:
 
 
 def _of_file(it: Interpreter, name: str) -> Font:
-    world = it.program.resolution.world
-    if world is None:
+    if (world := it.program.resolution.world) is None:
         raise NoFontError("E0359", f"`{name}` cannot be read: only this text is at hand")
     try:
         path = relative_to(name, _writer(it))
@@ -97,28 +96,23 @@ def _writer(it: Interpreter) -> str:
 def typeset(it: Interpreter, a: Arguments) -> tuple[Glyph, ...]:
     """Returns the characters of a text in units of its height; empty after an error, reported here."""
     node = it.call_sites[-1]
-    text, align, spacing = a["text"], a["align"], a["line_spacing"]
-    assert isinstance(text, TextVal)
-    assert isinstance(align, TextVal)
-    assert isinstance(spacing, Num)
-    apart = constant(it, spacing, node, "the spacing of lines")
-    if align.value not in lettering.ALIGNMENTS:
+    text, align, name = (certain(a[each], TextVal).value for each in ("text", "align", "font"))
+    apart = constant(it, certain(a["line_spacing"], Num), node, "the spacing of lines")
+    if align not in lettering.ALIGNMENTS:
         allowed = ", ".join(f'`"{word}"`' for word in lettering.ALIGNMENTS)
-        message = f'"{align.value}" is not one of the words that are meant here'
+        message = f'"{align}" is not one of the words that are meant here'
         report_once(it, "E0516", message, node, [f"it is one of {allowed}"])
         return ()
     if apart is None:
         return ()
-    if len(text.value) > it.limits.entities:
-        it.count_entity(node, len(text.value))  # stops here, before the letters are set
-    assert isinstance(a["font"], TextVal)
-    name = a["font"].value
+    if len(text) > it.limits.entities:
+        it.count_entity(node, len(text))  # stops here, before the letters are set
     try:
         font = font_of(it, name, bold=a["bold"] is True)
-        if unknown := lettering.unknown_characters(text.value, font):
+        if unknown := lettering.unknown_characters(text, font):
             _report_unknown(it, unknown, node, name)
             return ()
-        glyphs = lettering.typeset(text.value, align.value, apart, font)
+        glyphs = lettering.typeset(text, align, apart, font)
     except (NoFontError, FontError) as reason:
         lack = reason if isinstance(reason, NoFontError) else _broken(name, reason)
         report_once(it, lack.code, lack.message, node, lack.hints)
@@ -134,8 +128,7 @@ def is_filled(a: Arguments, glyphs: Sequence[Glyph]) -> bool:
     return a["outline"] is not True and not any(glyph.is_stroked for glyph in glyphs)
 
 
-_BRIDGE = 0.1
-"""Width of the bridges of a stencil, in heights of a capital, where none is told."""
+_BRIDGE = 0.1  # width of the bridges of a stencil, in heights of a capital, where none is told
 
 
 def bridge(it: Interpreter, a: Arguments) -> Num | None:

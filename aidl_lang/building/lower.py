@@ -74,8 +74,7 @@ class Placing(Generic[N]):
 
     def __call__(self, x: N, y: N, owner: Structure) -> tuple[N, N]:
         """Returns a point in the frame of `owner`, as the root sees it."""
-        way = self._ways.get(owner)
-        if way is None:
+        if (way := self._ways.get(owner)) is None:
             way = self._way(owner)
         if not way:
             return x, y
@@ -98,7 +97,7 @@ class Placing(Generic[N]):
     def _step(self, s: Structure) -> _Step[N]:
         frame, number, turn = s.frame, self.number, None
         if not frame.is_level:
-            cosine, sine = frame.cos_sin()
+            cosine, sine = ex.towards(frame.rotation)
             turn = number(cosine), number(sine)
         return _Step(number(frame.x), number(frame.y), turn, frame.mirrored)
 
@@ -110,11 +109,9 @@ class Placing(Generic[N]):
 
 _RADIAN = 180.0 / np.pi
 
-_LONGEST_TURN = 60.0
-"""Degrees that an angle may turn in one step of the solver."""
+_LONGEST_TURN = 60.0  # degrees that an angle may turn in one step of the solver
 
-_SIDES = frozenset({"left", "right"}), frozenset({"bottom", "top"})
-"""The sides of boxes by axis."""
+_SIDES = frozenset({"left", "right"}), frozenset({"bottom", "top"})  # the sides of boxes by axis
 
 LEAST_SHARE = 1e-3
 """The least part of a kept size that remains when it gives way: it may shrink, but not vanish."""
@@ -144,8 +141,7 @@ def preference(lowered: Lowered) -> list[int]:
     """Returns the constraints as conflicts take them for granted: unwritten ones first, then as written."""
 
     def place(index: int) -> tuple[bool, str, int, int]:
-        stated = lowered.stated[index]
-        if stated is None:
+        if (stated := lowered.stated[index]) is None:
             return (False, "", 0, index)
         return (stated.wording is not None, stated.span.source.name, stated.span.start, index)
 
@@ -267,9 +263,7 @@ class _Lowering:
         return self.standing[s]
 
     def _sealed(self, s: Structure) -> int:
-        """Returns the depth of the innermost `@rigid` structure around what a structure owns; 0 for none, -1
-        for the root.
-        """
+        """Returns the depth of the innermost `@rigid` structure around this; 0 for none, -1 for the root."""
         said = [each.attributes.get("rigid", (False,)) != (False,) for each in chain(s)]
         depths = (len(said) - 1 - n for n, is_rigid in enumerate(said) if is_rigid)
         return next((depth or -1 for depth in depths), 0)
@@ -306,32 +300,14 @@ class _Lowering:
     # --- Expressions ---------------------------------------------------------------------------
 
     def _node(self, root: Expression) -> int:
-        known, make, leaf = self.node_of, self.make, self._leaf
-        if root in known:
-            return known[root]
-        stack = [root]
-        while stack:
-            node = stack[-1]
-            if node in known:
-                stack.pop()
-                continue
-            ready = True
-            for arg in node.args:
-                if arg not in known:
-                    stack.append(arg)
-                    ready = False
-            if ready:
-                stack.pop()
-                known[node] = make[node.op](*[known[a] for a in node.args]) if node.args else leaf(node)
-        return known[root]
+        return ex.folded(root, self.node_of, self.make, self._leaf)
 
     def _leaf(self, node: Expression) -> int:
         if node.op == "constant":
             return self.tape.constant(node.value)
         if not isinstance(node.payload, Unknown):
             raise TypeError(f"`{node.op}` is known only once all is drawn")
-        number = self.numbers.get(node.payload)
-        if number is None:
+        if (number := self.numbers.get(node.payload)) is None:
             return self.tape.constant(node.payload.guess)
         return self.tape.unknown(number, shifts=_axis(node.payload) >= 0)
 
@@ -479,8 +455,7 @@ def _places(structure: Structure, holder: Structure) -> Iterator[Expression]:
         yield from (frame.x, frame.y, frame.rotation)
 
 
-_Seen = tuple[Expression, Expression] | tuple[Expression]
-"""A place, or a number."""
+_Seen = tuple[Expression, Expression] | tuple[Expression]  # a place, or a number
 
 
 def seen(s: Structure) -> Iterator[tuple[Geometry | Structure, str, _Seen]]:
@@ -493,7 +468,7 @@ def seen(s: Structure) -> Iterator[tuple[Geometry | Structure, str, _Seen]]:
     if s.plan:
         left, bottom, width, height = s.plan
         yield s, s.path, (left, bottom)
-        yield s, s.path, (ex.add(left, width), ex.add(bottom, height))
+        yield s, s.path, (left + width, bottom + height)
 
 
 def _seen_geometry(geometry: Geometry) -> Iterator[tuple[str, _Seen]]:

@@ -7,13 +7,14 @@ formulas hold as long as that stays. What is drawn is measured again once all is
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Sequence
-from functools import reduce
+import operator
+from collections.abc import Iterator, Sequence
+from functools import partial, reduce
 
 from aidl_lang.building import expression as ex
-from aidl_lang.building.along import Cubic, way
-from aidl_lang.building.curves import Place, clockwise, gauss, number, sweep, view, xy
-from aidl_lang.building.expression import Expression
+from aidl_lang.building.along import Cubic
+from aidl_lang.building.curves import NOWHERE, clockwise, gauss, number, sweep, view, xy
+from aidl_lang.building.expression import Expression, Place
 from aidl_lang.building.model import Geometry, Measurement, Structure
 from aidl_lang.common.records import record
 
@@ -22,13 +23,10 @@ FORMULAS = (
     "with holes inside"
 )
 OTHERWISE = "by the outline it does, but what is drawn is rounded, clipped, crossed or cut by more"
-_MEET = 1e-6
-"""How near ends have to be to meet, relative to the extent of the outline."""
+_MEET = 1e-6  # how near ends have to be to meet, relative to the extent of the outline
 _SAMPLES = 16
-_MOMENTS = 5
-"""Terms that are exact for the moments of a cubic: polynomials of degree 8."""
-_MEANS = 6
-"""Steps of the arithmetic-geometric mean: exact for ellipses up to 1000 times as long as wide."""
+_MOMENTS = 5  # terms that are exact for the moments of a cubic: polynomials of degree 8
+_MEANS = 6  # steps of the arithmetic-geometric mean: exact for ellipses up to 1000 times as long as wide
 
 
 @record(eq=False)
@@ -60,7 +58,7 @@ def formula(of: Measurement) -> Expression | None:
         for share, sides in loops:
             shares = (side.length if of.kind == "perimeter" else side.area for side in sides)
             factor = 1 if of.kind == "perimeter" else sign * share
-            total = ex.add(total, ex.mul(ex.constant(factor), reduce(ex.add, shares)))
+            total = total + factor * reduce(operator.add, shares)
     return total
 
 
@@ -68,13 +66,10 @@ def centroid(geometry: Geometry, here: Structure) -> Place | None:
     """Returns the centroid of what a closed geometry encloses; None if no formula tells."""
     if (loops := _loops(geometry, here)) is None:
         return None
-    area = x = y = ex.ZERO
-    for share, sides in loops:
-        for side in sides:
-            by = ex.constant(share)
-            area = ex.add(area, ex.mul(by, side.area))
-            x, y = (ex.add(m, ex.mul(by, own)) for m, own in zip((x, y), side.moments, strict=True))
-    return ex.div(x, area), ex.div(y, area)
+    pieces = [(share, side) for share, sides in loops for side in sides]
+    area = sum((share * side.area for share, side in pieces), ex.ZERO)
+    x, y = sum((share * side.moments for share, side in pieces), NOWHERE)
+    return Place(x / area, y / area)
 
 
 def _loops(geometry: Geometry, here: Structure) -> list[tuple[int, list[_Side]]] | None:
@@ -126,7 +121,7 @@ def _chained(sides: Sequence[_Side]) -> Iterator[list[tuple[_Side, bool]]]:
 
 def _values(side: _Side) -> list[tuple[float, float]]:
     assert side.ends is not None
-    return [(x.value, y.value) for x, y in side.ends]
+    return [end.written for end in side.ends]
 
 
 def _signed(outline: Sequence[tuple[float, float]]) -> float:
@@ -143,109 +138,94 @@ def _encloses(outline: Sequence[tuple[float, float]], spot: tuple[float, float])
     return sum(crossed) % 2 == 1
 
 
-def _sum(*terms: tuple[float, Expression]) -> Expression:
-    return reduce(ex.add, (ex.mul(ex.constant(by), term) for by, term in terms))
-
-
 def _cross(a: Place, b: Place) -> Expression:
-    return ex.sub(ex.mul(a[0], b[1]), ex.mul(a[1], b[0]))
+    return a.x * b.y - a.y * b.x
+
+
+_square = partial(ex.apply, "square")
 
 
 def _line(g: Geometry, here: Structure) -> _Side:
     core = view(g, here)
     a, b = xy(core["start"]), xy(core["end"])
-    dx, dy = ex.sub(b[0], a[0]), ex.sub(b[1], a[1])
+    way = b - a
 
     def squares(p: Expression, q: Expression) -> Expression:
-        return _sum((1.0, ex.apply("square", p)), (1.0, ex.mul(p, q)), (1.0, ex.apply("square", q)))
+        return _square(p) + p * q + _square(q)
 
-    moments = _sum((1 / 6, ex.mul(dy, squares(a[0], b[0])))), _sum((-1 / 6, ex.mul(dx, squares(a[1], b[1]))))
-    sampled = tuple((x.value, y.value) for x, y in (a, b))
-    return _Side((a, b), ex.apply("hypot", dx, dy), _sum((0.5, _cross(a, b))), moments, sampled)
+    moments = Place(1 / 6 * (way.y * squares(a.x, b.x)), -1 / 6 * (way.x * squares(a.y, b.y)))
+    return _Side((a, b), way.length, 0.5 * _cross(a, b), moments, (a.written, b.written))
 
 
 def _arc(g: Geometry, here: Structure) -> _Side:
     core, is_clockwise = view(g, here), clockwise(g, here)
     c, r, a, b = xy(core["center"]), number(core["radius"]), xy(core["start"]), xy(core["end"])
-    turn = ex.mul(sweep(core, is_clockwise), ex.constant(ex.DEGREE))
-    phi = ex.apply("neg", turn) if is_clockwise else turn
-    first = math.atan2(a[1].value - c[1].value, a[0].value - c[0].value)
+    turn = sweep(core, is_clockwise) * ex.DEGREE
+    phi = -turn if is_clockwise else turn
+    (x, y), (x0, y0) = c.written, a.written
+    first = math.atan2(y0 - y, x0 - x)
     at = (first + phi.value * k / _SAMPLES for k in range(_SAMPLES + 1))
-    sampled = tuple((c[0].value + r.value * math.cos(t), c[1].value + r.value * math.sin(t)) for t in at)
-    ((u, v), (s, t)), swept = (way(c, p) for p in (a, b)), ex.mul(ex.apply("square", r), phi)
-    area = _sum((0.5, swept), (0.5, ex.sub(ex.mul(c[0], ex.sub(t, v)), ex.mul(c[1], ex.sub(s, u)))))
+    sampled = tuple((x + r.value * math.cos(t), y + r.value * math.sin(t)) for t in at)
+    (u, v), (s, t), swept = a - c, b - c, _square(r) * phi
+    area = 0.5 * swept + 0.5 * (c.x * (t - v) - c.y * (s - u))
 
     def moment(middle: Expression, low: Expression, high: Expression, both: Expression) -> Expression:
         """Returns ½∮ (middle + r cos)² r cos over the arc; `low` and `high` are r sin at its ends, `both` the
         half sum of the sweep and of cos sin, times r².
         """
-        cubes = (
-            ex.sub(ex.mul(ex.apply("square", r), p), _sum((1 / 3, ex.mul(p, ex.apply("square", p)))))
-            for p in (high, low)
-        )
-        flat = ex.mul(ex.apply("square", middle), ex.sub(high, low))
-        return _sum((0.5, flat), (1.0, ex.mul(middle, both)), (0.5, reduce(ex.sub, cubes)))
+        above, below = (_square(r) * p - 1 / 3 * (p * _square(p)) for p in (high, low))
+        return 0.5 * (_square(middle) * (high - low)) + middle * both + 0.5 * (above - below)
 
-    product = ex.sub(ex.mul(s, t), ex.mul(u, v))
-    moments = (
-        moment(c[0], v, t, _sum((0.5, swept), (0.5, product))),
-        moment(c[1], ex.apply("neg", u), ex.apply("neg", s), _sum((0.5, swept), (-0.5, product))),
+    product = s * t - u * v
+    moments = Place(
+        moment(c.x, v, t, 0.5 * swept + 0.5 * product), moment(c.y, -u, -s, 0.5 * swept + -0.5 * product)
     )
-    return _Side((a, b), ex.mul(r, turn), area, moments, sampled)
+    return _Side((a, b), r * turn, area, moments, sampled)
 
 
 def _round(g: Geometry, here: Structure) -> _Side:
     """Returns a circle or an ellipse as a piece without ends."""
     core = view(g, here)
     c = xy(core["center"])
-    radii = [number(core[name]) for name in (("rx", "ry") if g.type == "ellipse" else ("radius", "radius"))]
-    area = ex.mul(ex.constant(math.pi), ex.mul(*radii))
-    length = _around(*radii) if g.type == "ellipse" else ex.mul(ex.constant(math.tau), radii[0])
+    rx, ry = (number(core[name]) for name in (("rx", "ry") if g.type == "ellipse" else ("radius", "radius")))
+    area = math.pi * (rx * ry)
+    length = _around(rx, ry) if g.type == "ellipse" else math.tau * rx
     angle = math.radians(number(core["angle"]).value) if g.type == "ellipse" else 0.0
     cos, sin = math.cos(angle), math.sin(angle)
     turns = (math.tau * k / _SAMPLES for k in range(_SAMPLES))
-    on = ((radii[0].value * math.cos(t), radii[1].value * math.sin(t)) for t in turns)
-    sampled = tuple((c[0].value + x * cos - y * sin, c[1].value + x * sin + y * cos) for x, y in on)
-    return _Side(None, length, area, (ex.mul(area, c[0]), ex.mul(area, c[1])), sampled)
+    on = ((rx.value * math.cos(t), ry.value * math.sin(t)) for t in turns)
+    sampled = tuple((c.x.value + x * cos - y * sin, c.y.value + x * sin + y * cos) for x, y in on)
+    return _Side(None, length, area, area * c, sampled)
 
 
 def _around(rx: Expression, ry: Expression) -> Expression:
     """Returns the perimeter of an ellipse by the arithmetic-geometric mean (Abramowitz and Stegun, 17.6)."""
     a, b = rx, ry
-    total = _sum((0.5, ex.apply("square", a)), (0.5, ex.apply("square", b)))
+    total = 0.5 * _square(a) + 0.5 * _square(b)
     for k in range(_MEANS):
-        off = _sum((0.5, a), (-0.5, b))
-        a, b = _sum((0.5, a), (0.5, b)), ex.apply("sqrt", ex.mul(a, b))
-        total = ex.sub(total, _sum((2.0**k, ex.apply("square", off))))
-    return ex.div(ex.mul(ex.constant(math.tau), total), a)
+        off = 0.5 * a + -0.5 * b
+        a, b = 0.5 * a + 0.5 * b, ex.apply("sqrt", a * b)
+        total = total - 2.0**k * _square(off)
+    return math.tau * total / a
 
 
 def _bezier(g: Geometry, here: Structure) -> _Side:
     core = view(g, here)
-    a, b, c, d = (xy(core[name]) for name in ("p0", "p1", "p2", "p3"))
-    cubic = Cubic((a, b, c, d))
+    a, b, c, d = points = tuple(xy(core[name]) for name in ("p0", "p1", "p2", "p3"))
     shares = ((6, a, b), (3, a, c), (1, a, d), (3, b, c), (3, b, d), (6, c, d))
-    area = _sum(*((w / 20, _cross(p, q)) for w, p, q in shares))
-    moments = [ex.ZERO, ex.ZERO]
+    area = reduce(operator.add, (w / 20 * _cross(p, q) for w, p, q in shares))
+    moments = NOWHERE
     for t, w in gauss(_MOMENTS):
         s = 1 - t
         of_place = s**3, 3 * s * s * t, 3 * s * t * t, t**3
         of_way = -3 * s * s, 3 * s * s - 6 * s * t, 6 * s * t - 3 * t * t, 3 * t * t
-        axes = list(zip(a, b, c, d, strict=True))
-        place, way = ([_sum(*zip(w, axis, strict=True)) for axis in axes] for w in (of_place, of_way))
-        for axis, sign in ((0, 0.5), (1, -0.5)):
-            moments[axis] = ex.add(
-                moments[axis], _sum((sign * w, ex.mul(ex.apply("square", place[axis]), way[1 - axis])))
-            )
+        place, way = (reduce(operator.add, map(operator.mul, each, points)) for each in (of_place, of_way))
+        moments = moments + Place(0.5 * w * (_square(place.x) * way.y), -0.5 * w * (_square(place.y) * way.x))
     at = ((k / _SAMPLES, 1 - k / _SAMPLES) for k in range(_SAMPLES + 1))
     weights = ((s**3, 3 * s * s * t, 3 * s * t * t, t**3) for t, s in at)
-    values = [[p[axis].value for p in (a, b, c, d)] for axis in (0, 1)]
-    sampled = tuple((_dot(w, values[0]), _dot(w, values[1])) for w in weights)
-    return _Side((a, d), cubic.length, area, (moments[0], moments[1]), sampled)
-
-
-def _dot(weights: Iterable[float], values: Iterable[float]) -> float:
-    return sum(w * v for w, v in zip(weights, values, strict=True))
+    xs, ys = zip(*(p.written for p in points), strict=True)
+    sampled = tuple((sum(map(operator.mul, w, xs)), sum(map(operator.mul, w, ys))) for w in weights)
+    return _Side((a, d), Cubic((a, b, c, d)).length, area, moments, sampled)
 
 
 _SIDES = {"line": _line, "arc": _arc, "circle": _round, "ellipse": _round, "bezier": _bezier}

@@ -41,6 +41,7 @@ from aidl_lang.building.values import (
     RecordVal,
     TextVal,
     Value,
+    certain,
     kind_of,
     members,
     number,
@@ -134,11 +135,8 @@ def _refers(value: Value) -> bool:
 def _own_point(it: Interpreter, binding: PassedBinding, point: PointVal, here: Structure) -> PointVal:
     """Makes a point of the instance where, in its frame, the argument is at the first guesses."""
     if _refers(point):
-        numbers = as_written(point)
-        assert isinstance(numbers, PointVal)
-        at = as_written(convert_point(numbers, binding.holder, here))
-        assert isinstance(at, PointVal)
-        point = at
+        written = certain(as_written(point), PointVal)
+        point = certain(as_written(convert_point(written, binding.holder, here)), PointVal)
     return positions(it, [point], here, [binding.name])[0]
 
 
@@ -193,8 +191,7 @@ def _read_var(it: Interpreter, var: VarBinding, node: ast.Node, env: Env) -> Val
 
 def _read_copied(it: Interpreter, copied: CopiedBinding, node: ast.Node, env: Env) -> Value:
     source = copied.source
-    assert isinstance(source.scope, Scope)
-    value = read(it, copied.binding, node, Env(source.scope, source.owner, Reach.OWN))
+    value = read(it, copied.binding, node, Env(certain(source.scope, Scope), source.owner))
     return copied.carry(copied.name, value, source.owner)
 
 
@@ -302,9 +299,9 @@ def member_names(value: Value) -> list[str]:
 
 
 def _structure_member(it: Interpreter, s: Structure, name: str, node: ast.Node, env: Env) -> Value | None:
-    assert isinstance(s.scope, Scope)
-    if (key := find(name, s.scope.values)) is not None:
-        binding = s.scope.values[key]
+    names = certain(s.scope, Scope).values
+    if (key := find(name, names)) is not None:
+        binding = names[key]
         value = read(it, binding, node, env)
         # Points kept as they are (`origin`, an argument, a list) are in the structure's own frame.
         is_own = isinstance(binding, PointVal | ListVal | PassedBinding)
@@ -332,8 +329,7 @@ def _geometry_member(it: Interpreter, g: Geometry, name: str, node: ast.Node, en
         fields = dict.fromkeys((*offered(g.type), *g.fields))
         key = find(name, fields) or name
         reached = may_read(it, g.bound_to, node, env)
-        value = curves.field(g, key, env.here)
-        if value is not None:
+        if (value := curves.field(g, key, env.here)) is not None:
             return value if reached else as_written(value)
     box = boxes.box_of(g, env.here)
     return _box_field(it, box, name, node, env) if box else None
@@ -341,8 +337,8 @@ def _geometry_member(it: Interpreter, g: Geometry, name: str, node: ast.Node, en
 
 def _shape_member(it: Interpreter, g: Geometry, key: str, node: ast.Node, env: Env) -> Value:
     """Returns a part, argument or let of a compound shape: read in its owner's frame, seen from here."""
-    assert isinstance(g.scope, Scope)
-    value = read(it, g.scope.values[key], node, Env(g.scope, g.owner, Reach.OWN))
+    scope = certain(g.scope, Scope)
+    value = read(it, scope.values[key], node, Env(scope, g.owner))
     value = curves.translate(key, value, g.owner, env.here)
     if isinstance(value, Num | PointVal | ListVal) and not is_same_everywhere(value):
         if not may_read(it, g.bound_to, node, env):
@@ -364,7 +360,7 @@ def _box_field(it: Interpreter, box: Box, name: str, node: ast.Node, env: Env) -
         return None
     if env.reach is Reach.ABOVE:
         if any(isinstance(s, Structure) and env.here.is_within(s) for s in box.sources):
-            env = Env(env.scope, env.here, Reach.OWN)  # it follows from what is made here
+            env = Env(env.scope, env.here)  # it follows from what is made here
         else:
             # over the unknowns of what is in it by now
             value = with_numbers(value, lambda n: replace(n, expression=boxes.spelled_out(n.expression)[0]))
@@ -425,7 +421,7 @@ def read_param(it: Interpreter, binding: ParamBinding, node: ast.Node) -> Value:
 
 def _evaluate(it: Interpreter, binding: ParamBinding) -> Value:
     node = binding.node
-    env = Env(binding.scope, binding.structure, Reach.OWN)
+    env = Env(binding.scope, binding.structure)
     written = it.evaluate(node.value, env)
     if isinstance(written, Num):
         known = constant(it, written, node.value, "the value of a `param`")
@@ -459,9 +455,7 @@ def _evaluate(it: Interpreter, binding: ParamBinding) -> Value:
     unit = _UNITS.get(value.dimension, "") if isinstance(value, Num) else ""
     pace = step.value if isinstance(step, Num) else 1.0 if counts and not choices else None
     it.knobs.append(Knob(path, _plain(value), low, high, choices, pace, unit, node.doc, node.span))
-    if isinstance(value, Num):
-        return Num(value.expression, value.dimension, Exactness.PARAM)
-    return value
+    return Num(value.expression, value.dimension, Exactness.PARAM) if isinstance(value, Num) else value
 
 
 def _is_whole(value: Value) -> bool:
@@ -521,8 +515,7 @@ def _from_outside(it: Interpreter, path: str, written: Value) -> Value:
         return written
     it.used_overrides.add(key)
     given = it.overrides[key]
-    value = _parse(given, written)
-    if value is None:
+    if (value := _parse(given, written)) is None:
         other = "true or false" if isinstance(written, bool) else "a number"
         kind = "a text" if isinstance(written, TextVal) else other
         it.report("E0910", f"`{key}={given}` does not fit: `{path}` is {kind}", None)
@@ -542,8 +535,7 @@ def _parse(given: str | float | bool, written: Value) -> Value | None:
                 return None
             if isinstance(given, int | float):
                 return number(float(given), dimension) if ex.is_number(given) else None
-            matched = _NUMBER.fullmatch(given)
-            if matched is None:
+            if (matched := _NUMBER.fullmatch(given)) is None:
                 return None
             factor, unit = UNITS.get(matched[2], (1.0, None))
             if matched[2] and (unit is None or dimension not in (None, unit)):

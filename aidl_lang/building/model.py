@@ -10,10 +10,10 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import field, replace
 from functools import cached_property, reduce
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, ClassVar, TypeAlias
 
 from aidl_lang.building import expression as ex
-from aidl_lang.building.expression import Expression, Unknown
+from aidl_lang.building.expression import Expression, Place, Unknown
 from aidl_lang.building.values import Num, PointVal, leaves
 from aidl_lang.checking.types import StructureType, TruthType, Type, fields_of, geometry_type
 from aidl_lang.checking.units import MaybeDimension
@@ -22,7 +22,9 @@ from aidl_lang.common.source import Span
 from aidl_lang.syntax import ast
 
 if TYPE_CHECKING:
+    from aidl_lang.building.state import Scope
     from aidl_lang.building.values import Value
+    from aidl_lang.building.wording import Wording
     from aidl_lang.common.drawings import Trace
     from aidl_lang.common.font_files import Curve
     from aidl_lang.common.lettering import Glyph
@@ -52,31 +54,25 @@ class Frame:
         """True if it is exactly not turned, as most are."""
         return self.rotation.is_constant and self.rotation.value == 0.0
 
-    def outward(self, x: Expression, y: Expression) -> tuple[Expression, Expression]:
-        """Converts coordinates of this frame to those of the parent's."""
-        u, v = self.turn(x, y)
-        return ex.add(self.x, u), ex.add(self.y, v)
+    @property
+    def origin(self) -> Place:
+        return Place(self.x, self.y)
 
-    def inward(self, x: Expression, y: Expression) -> tuple[Expression, Expression]:
-        """Converts coordinates of the parent's frame to those of this one."""
-        a, b = ex.sub(x, self.x), ex.sub(y, self.y)
+    def outward(self, at: Place) -> Place:
+        """Converts a place in this frame to that in the parent's."""
+        return self.origin + self.turn(at)
+
+    def inward(self, at: Place) -> Place:
+        """Converts a place in the parent's frame to that in this one."""
+        way = at - self.origin
         if not self.is_level:
-            c, s = self.cos_sin()
-            a, b = ex.add(ex.mul(c, a), ex.mul(s, b)), ex.sub(ex.mul(c, b), ex.mul(s, a))
-        return (ex.apply("neg", a) if self.mirrored else a), b
+            c, s = ex.towards(self.rotation)
+            way = Place(c * way.x + s * way.y, c * way.y - s * way.x)
+        return way.turned_over if self.mirrored else way
 
-    def turn(self, x: Expression, y: Expression) -> tuple[Expression, Expression]:
-        if self.mirrored:
-            x = ex.apply("neg", x)
-        if self.is_level:
-            return x, y
-        return ex.turned(*self.cos_sin(), x, y)
-
-    def cos_sin(self) -> tuple[Expression, Expression]:
-        if self.rotation.is_constant:
-            c, s = ex.exact_turn(self.rotation.value)
-            return ex.constant(c), ex.constant(s)
-        return ex.cos(self.rotation), ex.sin(self.rotation)
+    def turn(self, way: Place) -> Place:
+        way = way.turned_over if self.mirrored else way
+        return way if self.is_level else way.turned(ex.towards(self.rotation))
 
 
 @record(frozen=False, eq=False)
@@ -107,7 +103,7 @@ class Geometry:
     span: Span | None
     fields: dict[str, Value] = field(default_factory=dict)
     parts: dict[str, Value] = field(default_factory=dict)
-    scope: object = None
+    scope: Scope | None = None
     arguments: tuple[str, ...] = ()
     clockwise: bool = False
     glyphs: tuple[Glyph, ...] = ()
@@ -245,7 +241,7 @@ class Structure:
     source      the structure it is a copy of
     extents     sides of its box that were worked out, and `interior` the unknowns that place what is in it,
                 once it is complete (see boxes)
-    converted   coordinates in it as other structures see them (see `convert`)
+    converted   places in it as other structures see them (see `convert`)
     scope       the names its body sees (see interp)
     finishes    fillets and chamfers of its geometry
     clip        the outline that all in it is drawn inside of; empty for none
@@ -262,14 +258,12 @@ class Structure:
     members: dict[str, Value] = field(default_factory=dict)
     geometry: dict[str, Value] = field(default_factory=dict)
     children: list[Structure] = field(default_factory=list)
-    scope: object = None
+    scope: Scope | None = None
     plan: tuple[Expression, Expression, Expression, Expression] | None = None
     source: Structure | None = None
     extents: dict[object, Expression] = field(default_factory=dict, repr=False)
     interior: tuple[Unknown, ...] | None = field(default=None, repr=False)
-    converted: dict[tuple[Expression, Expression, Structure], tuple[Expression, Expression]] = field(
-        default_factory=dict, repr=False
-    )
+    converted: dict[tuple[Place, Structure], Place] = field(default_factory=dict, repr=False)
     finishes: list[Finish] = field(default_factory=list)
     clip: tuple[Geometry, ...] = ()
     ground: Structure | None = None
@@ -358,28 +352,26 @@ def reach_of(owners: Iterable[Structure], here: Structure) -> Structure | None:
     return reach if reach is not here else None
 
 
-def convert(
-    x: Expression, y: Expression, source: Structure, target: Structure
-) -> tuple[Expression, Expression]:
-    """Converts coordinates in the frame of `source` to `target`'s; equal ones to the same expressions."""
+def convert(at: Place, source: Structure, target: Structure) -> Place:
+    """Converts a place in the frame of `source` to `target`'s; equal ones to the same expressions."""
     if source is target:
-        return x, y
-    key = x, y, target
+        return at
+    key = at, target
     if (known := source.converted.get(key)) is not None:
         return known
     meeting = common_ancestor(source, target)
     for structure in chain(source, meeting):
-        x, y = structure.frame.outward(x, y)
+        at = structure.frame.outward(at)
     for structure in reversed(chain(target, meeting)):
-        x, y = structure.frame.inward(x, y)
-    source.converted[key] = x, y
-    return x, y
+        at = structure.frame.inward(at)
+    source.converted[key] = at
+    return at
 
 
 def convert_point(point: PointVal, source: Structure, target: Structure) -> PointVal:
     if source is target:
         return point
-    x, y = convert(point.x.expression, point.y.expression, source, target)
+    x, y = convert(Place(point.x.expression, point.y.expression), source, target)
     status = max(point.x.status, point.y.status)
     return PointVal(Num(x, point.x.dimension, status), Num(y, point.y.dimension, status))
 
@@ -388,14 +380,14 @@ def convert_angle(angle: Expression, source: Structure, target: Structure) -> Ex
     """Converts a direction in degrees in the frame of `source` to that of `target`."""
     meeting = common_ancestor(source, target)
     for frame in (s.frame for s in chain(source, meeting)):
-        angle = ex.add(_mirrored(angle, frame), frame.rotation)
+        angle = _mirrored(angle, frame) + frame.rotation
     for frame in (s.frame for s in reversed(chain(target, meeting))):
-        angle = _mirrored(ex.sub(angle, frame.rotation), frame)
+        angle = _mirrored(angle - frame.rotation, frame)
     return angle
 
 
 def _mirrored(angle: Expression, frame: Frame) -> Expression:
-    return ex.sub(ex.constant(180.0), angle) if frame.mirrored else angle
+    return 180.0 - angle if frame.mirrored else angle
 
 
 @record(eq=False)
@@ -432,6 +424,10 @@ class Comparison:
         return ex.unknowns([self.left, self.right]) if self.beside is None else self.beside
 
 
+Part: TypeAlias = "Condition | Comparison | bool"
+"""A part of a condition."""
+
+
 @record(eq=False)
 class Condition:
     """A condition over unknowns: a comparison, or `and`, `or`, `not` of conditions."""
@@ -439,7 +435,7 @@ class Condition:
     value_type = TruthType()
 
     operator: str
-    parts: tuple[Condition | Comparison | bool, ...]
+    parts: tuple[Part, ...]
 
     def comparisons(self) -> Iterator[Comparison]:
         for part in self.parts:
@@ -458,12 +454,17 @@ class Constraint:
     text: str
     span: Span
     weight: float | None = None
-    label: str = ""
-    """loop variables at the place, as `i = 3`"""
-    wording: object = field(default=None, repr=False)
+    label: str = ""  # loop variables at the place, as `i = 3`
+    wording: Wording | None = field(default=None, repr=False)
     """the statement, to be read in other words (see building.wording); None for what was not stated"""
     is_inherent: bool = False
     """a demand of a shape on itself: nobody stated it for the structure that the shape is in"""
+
+    @property
+    def node(self) -> ast.Expression | None:
+        """The statement, if it is all that is written at its place; else None."""
+        wording = self.wording
+        return wording.node if wording is not None and wording.node.span == self.span else None
 
     @cached_property
     def mentions(self) -> tuple[str, ...]:
@@ -480,16 +481,19 @@ class Assertion:
     text: str
     span: Span
     label: str = ""
-    shape: str = ""
-    """the shape that demands this of its arguments"""
-    wording: object = field(default=None, repr=False)
+    shape: str = ""  # the shape that demands this of its arguments
+    wording: Wording | None = field(default=None, repr=False)
     """the condition, to be read again in parts (see building.wording)"""
-    outline: Geometry | None = None
-    """the outline whose box a constraint foresaw to be as this asks"""
+    outline: Geometry | None = None  # the outline whose box a constraint foresaw to be as this asks
     is_followed: bool = False
     """the members of a pattern are where they are on a curve that was solved to another form"""
     extent: float = 0.0
     """the length of a text along a curve, in heights of a capital, which the curve is to have room for"""
+
+
+def told(stated: Constraint | Assertion) -> str:
+    """Returns what was stated for a sentence, and in which turn of a loop."""
+    return f"`{stated.text}` [{stated.label}]" if stated.label else f"`{stated.text}`"
 
 
 @record(eq=False)

@@ -9,6 +9,7 @@ from aidl_lang.building import expression as ex
 from aidl_lang.building.boxes import spelled_out
 from aidl_lang.building.coerce import as_written, may_read, owners_of
 from aidl_lang.building.construct import size
+from aidl_lang.building.expression import Place
 from aidl_lang.building.model import (
     SIZES,
     Finish,
@@ -32,6 +33,7 @@ from aidl_lang.building.values import (
     leaves,
     length,
     members,
+    point,
 )
 from aidl_lang.checking.builtins import FINISHES, OUTLINES
 from aidl_lang.checking.units import LENGTH
@@ -59,8 +61,7 @@ def _outline(kind: str, *words: str) -> Function:
         geometry = Geometry(kind, env.here, it.place(node))
         operands: list[tuple[Geometry, ...]] = []
         for value in _operands(kind, a):
-            group = _sources(it, kind, value, node, env)
-            if group is None:
+            if (group := _sources(it, kind, value, node, env)) is None:
                 return NOTHING
             operands.append(tuple(group))
         if kind == "tiled":
@@ -115,12 +116,12 @@ def _lattice(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> tuple[G
     """
     angle = a.get("angle")
     frame = Frame(rotation=angle.expression if isinstance(angle, Num) else ex.ZERO)
-    ways = [(ex.ZERO, ex.ZERO), (ex.ONE, ex.ZERO), (ex.ZERO, ex.ONE), frame.turn(ex.ONE, ex.ZERO)]
+    x, y = Place(ex.ONE, ex.ZERO), Place(ex.ZERO, ex.ONE)
+    ways = [Place(ex.ZERO, ex.ZERO), x, y, frame.turn(x)]
     for name in ("by", "row"):
         if isinstance(p := a.get(name), PointVal):
-            ways.append(frame.turn(p.x.expression, p.y.expression))
-    points = [PointVal(length(x), length(y)) for x, y in ways]
-    return tuple(_as_point(it, p, node, env) for p in points)
+            ways.append(frame.turn(p.place))
+    return tuple(_as_point(it, point(*way), node, env) for way in ways)
 
 
 def _as_point(it: Interpreter, p: PointVal, node: ast.Call, env: Env) -> Geometry:
@@ -133,8 +134,7 @@ def _word(it: Interpreter, name: str, value: Value | None, node: ast.Call) -> st
     if value is None:
         return allowed[0]
     written = value.value if isinstance(value, TextVal) else ""
-    meant = find(_SYNONYMS.get(fold(written), written), dict.fromkeys(allowed))
-    if meant is None:
+    if (meant := find(_SYNONYMS.get(fold(written), written), dict.fromkeys(allowed))) is None:
         choices = ", ".join(ticked(allowed))
         hint = f"it is one of {choices}" if len(allowed) > 1 else f"it is a length, or {choices}"
         it.report("E0516", f'`{name}: "{written}"` is not known', node, hints=[hint])
@@ -266,8 +266,7 @@ def _sizes(it: Interpreter, kind: str, a: Arguments, target: _Target) -> tuple[N
 
 
 def _targets(it: Interpreter, value: Value, node: ast.Node, env: Env) -> Iterator[_Target | None]:
-    items = members(value)
-    if items is None:
+    if (items := members(value)) is None:
         yield _target(it, value, node, env, node.span.one_line)
         return
     curves = [item for item in items if isinstance(item, Geometry) and item.type != "point"]

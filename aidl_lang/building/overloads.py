@@ -15,6 +15,7 @@ from aidl_lang.building.values import (
     PointVal,
     TextVal,
     Value,
+    certain,
     kind_of,
     length,
     members,
@@ -81,13 +82,7 @@ def _value(source: ArgumentSource, values: Sequence[Value]) -> Value:
 # `align_left(slits)`.
 
 
-def placing(
-    condition: Value,
-    definition: ast.ConstraintDefinition,
-    binding: Binding,
-    values: Sequence[Value],
-    env: Env,
-) -> Value:
+def placing(condition: Value, binding: Binding, values: Sequence[Value], env: Env) -> Value:
     """Returns the condition of a call with the unknowns it places. The last positional argument is held on
     the first try and those before it are placed; equals are parties of one rank. A definition that only calls
     another leaves the choice to that one (`contains` holds its first), unless it gathered the arguments that
@@ -95,8 +90,8 @@ def placing(
     """
     if not isinstance(condition, Condition):
         return condition
-    equals = _equals(definition, binding, values)
-    if equals:
+    definition = certain(binding.signature.node, ast.ConstraintDefinition)
+    if equals := _equals(definition, binding, values):
         parties = tuple(frozenset(value_unknowns(value, env.here)) for value in equals)
         every = frozenset().union(*parties)
         return replace_placed(condition, every, () if _is_given_a_place(definition, binding) else parties)
@@ -191,8 +186,7 @@ class CallSite:
         before, found = self._last
         if kinds == before:  # usually so, and types are slow to hash
             return found
-        known = self._meanings.get(kinds)
-        if known is None:
+        if (known := self._meanings.get(kinds)) is None:
             if len(self._meanings) >= _MOST_MEANINGS:
                 self._meanings.clear()
             known = self._meanings[kinds] = select(self.signatures, given_to(self.node, kinds))

@@ -12,10 +12,10 @@ from aidl_lang.building.boxes import box_of
 from aidl_lang.building.coerce import whole
 from aidl_lang.building.construct import positions, size
 from aidl_lang.building.copies import centre_of, copied
-from aidl_lang.building.curves import NOWHERE, Motion, Place, defining, turned, xy
-from aidl_lang.building.expression import Expression
+from aidl_lang.building.curves import NOWHERE, Motion, defining, turned, xy
+from aidl_lang.building.expression import Expression, Place
 from aidl_lang.building.model import Assertion, Comparison, Condition, Geometry, Structure, reach_of
-from aidl_lang.building.state import Arguments, Env, Function, Interpreter
+from aidl_lang.building.state import Arguments, Env, Function, Indices, Interpreter
 from aidl_lang.building.values import (
     NOTHING,
     Exactness,
@@ -28,6 +28,7 @@ from aidl_lang.building.values import (
     StructureCopy,
     TextVal,
     Value,
+    certain,
     kind_of,
     length,
     number,
@@ -48,7 +49,6 @@ if TYPE_CHECKING:
 # They are built in because they make structures, which no definition of the language can do. A template is
 # instantiated once; the other members are copies over the same unknowns.
 
-Index = tuple[int, ...]
 
 _ORIGIN = PointVal(number(0.0, LENGTH), number(0.0, LENGTH))
 
@@ -92,8 +92,7 @@ class _Call:
 
     def size(self, name: str) -> Expression:
         """Returns a number that belongs to the pattern: kept if literal."""
-        value = self.a[name]
-        assert isinstance(value, Num)
+        value = certain(self.a[name], Num)
         dimension = value.dimension or LENGTH
         made = size(self.it, value, self.settings, name, dimension)
         self.settings.fields[name] = made
@@ -101,8 +100,7 @@ class _Call:
 
     def position(self, name: str) -> Place:
         """Returns a position of the pattern: a first guess if literal, the origin if missing."""
-        value = self.a.get(name, _ORIGIN)
-        assert isinstance(value, PointVal)
+        value = certain(self.a.get(name, _ORIGIN), PointVal)
         (made,) = positions(self.it, [value], self.settings, [name])
         self.settings.fields[name] = made
         return xy(made)
@@ -149,7 +147,7 @@ class _Call:
                 hints=["write it around the origin; or give no place: the row begins where it stands"],
             )
 
-    def laid_out(self, motions: Iterable[tuple[Index, Motion | None]]) -> Value:
+    def laid_out(self, motions: Iterable[tuple[Indices, Motion | None]]) -> Value:
         """Returns the members; one without a motion is the thing itself."""
         made = Pattern(self.node.callee.text, self.settings)
         for index, motion in motions:
@@ -178,15 +176,14 @@ def _called(answer: Callable[[_Call], Value]) -> Function:
 
 
 def _linear_array(call: _Call) -> Value:
-    n = call.count("n")
-    if n is None:
+    if (n := call.count("n")) is None:
         return NOTHING
     if "by" in call.a:
         step = xy(call.a["by"])
     else:
         pitch = call.size("pitch")
         angle = call.size("angle") if "angle" in call.a else ex.ZERO
-        step = ex.mul(pitch, ex.cos(angle)), ex.mul(pitch, ex.sin(angle))
+        step = pitch * ex.towards(angle)
     return _in_steps(call, ((n, step),))
 
 
@@ -198,7 +195,7 @@ def _grid(call: _Call) -> Value:
         across = up = call.size("pitch")
     else:
         across, up = call.size("pitch_x"), call.size("pitch_y")
-    return _in_steps(call, ((columns, (across, ex.ZERO)), (rows, (ex.ZERO, up))))
+    return _in_steps(call, ((columns, Place(across, ex.ZERO)), (rows, Place(ex.ZERO, up))))
 
 
 def _in_steps(call: _Call, ways: tuple[tuple[int, Place], ...]) -> Value:
@@ -206,41 +203,33 @@ def _in_steps(call: _Call, ways: tuple[tuple[int, Place], ...]) -> Value:
     if "center" in call.a and "start" in call.a:
         what = "a pattern is placed by its `center` or by the `start` of its first member, not by both"
         return call.wrong(what, "leave one of them out")
-    span = _total((ex.constant((n - 1) / 2), step) for n, step in ways)
-    back = _total([(ex.constant(-1.0), span)])
+    span = sum(((n - 1) / 2 * step for n, step in ways), NOWHERE)
+    back = -1.0 * span
     placed = next((name for name in ("start", "center") if name in call.a), None)
     goes_on = call.has_place and placed is None
     about = centre_of(call.it, call.thing, call.node, call.env) if goes_on else call.centre()
     first = back if goes_on and call.is_without_place(about) else NOWHERE
     if goes_on:
-        start = _total([(ex.ONE, about), (ex.ONE, first)])
+        start = about + first
     else:
         place = call.position(placed or "center")
-        start = place if placed == "start" else _total([(ex.ONE, place), (ex.ONE, back)])
+        start = place if placed == "start" else place + back
         call.check_alone(place)
     call.settings.fields.setdefault("start", point(*start))
-    call.settings.fields.setdefault("center", point(*_total([(ex.ONE, start), (ex.ONE, span)])))
+    call.settings.fields.setdefault("center", point(*(start + span)))
 
-    def motion(index: Index) -> Motion | None:
-        away = _total((ex.constant(float(i)), step) for i, (_, step) in zip(index, ways, strict=True))
+    def motion(index: Indices) -> Motion | None:
+        away = sum((i * step for i, (_, step) in zip(index, ways, strict=True)), NOWHERE)
         if goes_on:
             moves = first is back or any(index)
-            return Motion(to=_total([(ex.ONE, first), (ex.ONE, away)])) if moves else None
-        return Motion(about, _total([(ex.ONE, start), (ex.ONE, away)]))
+            return Motion(to=first + away) if moves else None
+        return Motion(about, start + away)
 
     return call.laid_out((index, motion(index)) for index in product(*(range(n) for n, _ in ways)))
 
 
-def _total(parts: Iterable[tuple[Expression, Place]]) -> Place:
-    x, y = ex.ZERO, ex.ZERO
-    for factor, (dx, dy) in parts:
-        x, y = ex.add(x, ex.mul(factor, dx)), ex.add(y, ex.mul(factor, dy))
-    return x, y
-
-
 def _polar_array(call: _Call) -> Value:
-    n = call.count("n")
-    if n is None:
+    if (n := call.count("n")) is None:
         return NOTHING
     if "radius" not in call.a and not call.has_place:
         what = "a template is laid out on a circle, whose `radius` is not said"
@@ -253,14 +242,13 @@ def _polar_array(call: _Call) -> Value:
     about = call.centre() if radius is not None else centre_of(call.it, call.thing, call.node, call.env)
 
     def motion(i: int) -> Motion | None:
-        angle = ex.add(start, ex.mul(ex.constant(float(i)), step))
+        angle = start + float(i) * step
         if radius is None:
             if i == 0 and "start" not in call.a:
                 return None
             round_about = turned(angle, center)
-            return round_about if turns else Motion(about, round_about.place(*about))
-        out = ex.mul(radius, ex.cos(angle)), ex.mul(radius, ex.sin(angle))
-        to = ex.add(center[0], out[0]), ex.add(center[1], out[1])
+            return round_about if turns else Motion(about, round_about.place(about))
+        to = center + radius * ex.towards(angle)
         return turned(angle, about, to) if turns else Motion(about, to)
 
     return call.laid_out(((i,), motion(i)) for i in range(n))
@@ -268,12 +256,11 @@ def _polar_array(call: _Call) -> Value:
 
 def _step(call: _Call, n: int) -> Expression:
     """Returns the angle between members: a full turn has no last one on its first, a part of one has ends."""
-    sweep = call.a.get("sweep", number(360.0, ANGLE))
-    assert isinstance(sweep, Num)
+    sweep = certain(call.a.get("sweep", number(360.0, ANGLE)), Num)
     is_full = abs(abs(sweep.value) - 360.0) < 1e-9
     if is_full and sweep.expression.is_constant:
         return ex.constant(sweep.value / max(n, 1))
-    return ex.div(call.size("sweep"), ex.constant(float(n if is_full else max(n - 1, 1))))
+    return call.size("sweep") / float(n if is_full else max(n - 1, 1))
 
 
 def _along(call: _Call) -> Value:
@@ -320,29 +307,27 @@ def _evenly(call: _Call, way: Way) -> list[Expression] | None:
     name = next((n for n in ("inset", "margin") if n in call.a), None)
     inset = call.size(name) if name and not (way.is_closed and name == "margin") else ex.ZERO
     length = way.length
-    room = length if way.is_closed else ex.sub(length, ex.mul(ex.constant(2.0), inset))
+    room = length if way.is_closed else length - 2.0 * inset
     if room.value <= 0:
         what = f"an `inset` of {inset.value:g} at both ends"
         message = f"nothing is left of a curve of {length.value:g} mm with {what}"
         call.wrong(message, "make the `inset` less")
         return None
-    found = _steps(call, room, is_closed=way.is_closed)
-    if found is None:
+    if (found := _steps(call, room, is_closed=way.is_closed)) is None:
         return None
     n, step = found
     first = inset
     if not way.is_closed:
-        left = ex.sub(room, ex.mul(ex.constant(float(n - 1)), step))
-        first = ex.add(inset, ex.half(left))
+        left = room - float(n - 1) * step
+        first = inset + left * 0.5
     call.settings.fields.setdefault("pitch", Num(step, LENGTH))
-    return [ex.add(first, ex.mul(ex.constant(float(i)), step)) for i in range(n)]
+    return [first + float(i) * step for i in range(n)]
 
 
 def _on_corners(call: _Call, way: Way, corners: Sequence[Expression]) -> list[Expression] | None:
     """Returns the ways to members in all corners of a closed way, and evenly between each and the next."""
-    runs = [ex.sub(b, a) for a, b in pairwise([*corners, ex.add(corners[0], way.length)])]
-    found = _steps(call, way.length, is_closed=True)
-    if found is None:
+    runs = [b - a for a, b in pairwise([*corners, corners[0] + way.length])]
+    if (found := _steps(call, way.length, is_closed=True)) is None:
         return None
     parts = [1 if "n" in call.a else max(1, round(run.value / found[1].value)) for run in runs]
     if "n" in call.a and found[0] < len(runs):
@@ -354,12 +339,11 @@ def _on_corners(call: _Call, way: Way, corners: Sequence[Expression]) -> list[Ex
         parts[sparse] += 1
     spans = zip(corners, runs, parts, strict=True)
     shares = ((corner, run, k / part) for corner, run, part in spans for k in range(part))
-    places = [ex.add(corner, ex.mul(ex.constant(share), run)) for corner, run, share in shares]
-    return [p if p.value < way.length.value else ex.sub(p, way.length) for p in places]
+    places = [corner + share * run for corner, run, share in shares]
+    return [p if p.value < way.length.value else p - way.length for p in places]
 
 
-_MOST_ALONG = 20_000
-"""Members times curves: each place is worked out over all of them."""
+_MOST_ALONG = 20_000  # members times curves: each place is worked out over all of them
 
 
 def _way(call: _Call) -> Way | None:
@@ -391,18 +375,16 @@ def _point_at(call: _Call) -> Value:
     """Returns the point of curves at a length from their start, or the first or last that has an x or a y."""
     from aidl_lang.building.along import crossings
 
-    at, axis = call.a["at"], call.a.get("axis")
-    assert isinstance(at, Num)
+    at, axis = certain(call.a["at"], Num), call.a.get("axis")
     if axis is None:
         if (way := _way(call)) is None:
             return NOTHING
         place, _, off = way.followed(at.expression)
     else:
-        assert isinstance(axis, TextVal)
-        curves = _curves(call)
-        found = crossings(curves or (), call.env.here, int(axis.value == "y"), at.expression)
+        curves, word = _curves(call), certain(axis, TextVal).value
+        found = crossings(curves or (), call.env.here, int(word == "y"), at.expression)
         if not found:
-            what = f"no point of this outline has {axis.value} = {at.value:g}"
+            what = f"no point of this outline has {word} = {at.value:g}"
             return call.wrong(what, "name an outline that reaches there") if curves is not None else NOTHING
         place, off = found[-1 if call.a["last"] is True else 0]
     call.check_followed(off)
@@ -415,17 +397,16 @@ def _way_between(call: _Call) -> Value:
         return NOTHING
     (first, off), (last, more) = (way.up_to(xy(call.a[name])) for name in ("a", "b"))
     call.check_followed([off, more])
-    between = ex.apply("abs", ex.sub(last, first))
-    return length(ex.apply("minimum", between, ex.sub(way.length, between)) if way.is_closed else between)
+    between = ex.apply("abs", last - first)
+    return length(ex.apply("minimum", between, way.length - between) if way.is_closed else between)
 
 
 def _steps(call: _Call, room: Expression, *, is_closed: bool) -> tuple[int, Expression] | None:
     if "n" in call.a:
-        n = call.count("n")
-        if n is None:
+        if (n := call.count("n")) is None:
             return None
         parts = n if is_closed else n - 1
-        return n, ex.div(room, ex.constant(float(parts))) if parts > 0 else ex.ZERO
+        return n, room / float(parts) if parts > 0 else ex.ZERO
     pitch = call.size("pitch")
     if pitch.value <= 0:
         call.wrong(f"the `pitch` is {pitch.value:g}", "write the way from one member to the next, in mm")
@@ -435,7 +416,7 @@ def _steps(call: _Call, room: Expression, *, is_closed: bool) -> tuple[int, Expr
         return None
     if is_closed:
         n = max(1, round(fit))
-        return n, ex.div(room, ex.constant(float(n)))
+        return n, room / float(n)
     return math.floor(fit + 1e-9) + 1, pitch
 
 
@@ -454,8 +435,7 @@ FUNCTIONS = {
 # A character is a text of its own whose place and angle are expressions of the curve, so it stays on it
 # wherever the curve is solved to be.
 
-_UPRIGHT = TextVal("upright")
-"""The side of a curve that is not told."""
+_UPRIGHT = TextVal("upright")  # the side of a curve that is not told
 
 
 def lettered(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
@@ -481,13 +461,10 @@ def lettered(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
         hint = "name an edge of an outline, as in `along: plate.top`, or draw a guide near it: "
         report_once(it, "E0358", message, it.call_sites[-1], [hint + "`construction way = arc(…)`"])
         return NOTHING
-    glyphs, align = typeset(it, a), a["align"]
-    if not glyphs:
+    if not (glyphs := typeset(it, a)):
         return NOTHING
-    assert isinstance(align, TextVal)
-    assert isinstance(a["height"], Num)
-    share = 0.5 if way.is_closed else ALIGNMENTS[align.value]
-    first, found = ex.mul(way.length, ex.constant(share)), list[Geometry]()
+    share = 0.5 if way.is_closed else ALIGNMENTS[certain(a["align"], TextVal).value]
+    first, found = way.length * share, list[Geometry]()
     height: Expression | None = None
     reach, bridges = reach_of([g.bound_to for g in given], env.here), bridge(it, a)
     for glyph in glyphs:
@@ -495,11 +472,10 @@ def lettered(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
         g = Geometry("glyphs", env.here, it.place(node), glyphs=(glyph,), reach=reach)
         g.filled = is_filled(a, glyphs)
         if height is None:
-            height = size(it, a["height"], g, "height").expression
-        middle = ex.mul(height, ex.constant((glyph.box[0] + glyph.box[2]) / 2))
-        (x, y), heading = way.at(ex.add(first, middle))
-        cos, sin = ex.cos(heading), ex.sin(heading)
-        start = point(ex.sub(x, ex.mul(middle, cos)), ex.sub(y, ex.mul(middle, sin)))
+            height = size(it, certain(a["height"], Num), g, "height").expression
+        middle = height * ((glyph.box[0] + glyph.box[2]) / 2)
+        at, heading = way.at(first + middle)
+        start = point(*(at - middle * ex.towards(heading)))
         angle = Num(heading, ANGLE, Exactness.REFERENCE)
         g.fields = {"start": start, "height": length(height), "angle": angle}
         g.bridge = bridges
@@ -508,7 +484,7 @@ def lettered(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
             it.following.append(g)
     extent = max(glyph.box[2] for glyph in glyphs) - min(glyph.box[0] for glyph in glyphs)
     assert height is not None
-    fits = Comparison("<=", ex.mul(height, ex.constant(extent)), way.length, LENGTH)
+    fits = Comparison("<=", height * extent, way.length, LENGTH)
     call = it.call_sites[-1]
     place = it.place(call) or call.span
     it.assertions.append(

@@ -33,7 +33,7 @@ from aidl_lang.syntax import ast
 from aidl_lang.typecheck import Program
 
 if TYPE_CHECKING:
-    from aidl_lang.building.attributes import StatedClip, StatedOrder
+    from aidl_lang.building.attributes import Stated
     from aidl_lang.building.copies import Copier
     from aidl_lang.building.overloads import CallSite
     from aidl_lang.common.lettering import Font
@@ -46,7 +46,10 @@ if TYPE_CHECKING:
 # evaluated when it is read.
 
 
-def indexed(name: str, indices: Sequence[int]) -> str:
+Indices: TypeAlias = tuple[int, ...]
+
+
+def indexed(name: str, indices: Indices) -> str:
     """Returns the name of a member of an array: `dot[3]`."""
     return name + "".join([f"[{i}]" for i in indices]) if indices else name
 
@@ -214,7 +217,18 @@ class Env:
 
     scope: Scope
     here: Structure
-    reach: Reach
+    reach: Reach = Reach.OWN
+
+    @property
+    def holder(self) -> Holder:
+        """The structure or shape whose members are declared here."""
+        return self.scope.declaring().container or self.here
+
+    def within(self, scope: Scope) -> Env:
+        return Env(scope, self.here, self.reach)
+
+    def reaching(self, reach: Reach) -> Env:
+        return Env(self.scope, self.here, reach)
 
 
 @record()
@@ -237,7 +251,7 @@ class Stop(Exception):  # noqa: N818 (not an error of ours: the program went ove
 
 
 Executor = Callable[..., None]
-"""A function that carries out a statement: (interpreter, statement, scope, structure)."""
+"""A function that carries out a statement: (interpreter, statement, environment)."""
 
 
 @record(frozen=False)
@@ -245,8 +259,7 @@ class Ahead:
     """A body that is being run; `next` is the statement after the one that is run now."""
 
     statements: Sequence[ast.Statement]
-    scope: Scope
-    here: Structure
+    env: Env
     next: int = 0
 
 
@@ -273,13 +286,12 @@ class Interpreter:
     """for readings, by number, how many places from the nearest to what is written they are to be taken"""
     states_constants: bool = False
     """conditions over constants become constraints of the model like others, and those of asserts too"""
-    whole_boxes: bool = False
-    """no box leaves out those of descendants that it is compared with"""
+    whole_boxes: bool = False  # no box leaves out those of descendants that it is compared with
     literals: list[Literal] = field(default_factory=list)
-    pending: dict[Structure, list[tuple[ast.Statement, Scope]]] = field(default_factory=dict)
-    orders: dict[Structure, list[StatedOrder]] = field(default_factory=dict)
+    pending: dict[Structure, list[tuple[ast.Statement, Env]]] = field(default_factory=dict)
+    orders: dict[Structure, list[Stated]] = field(default_factory=dict)
     """what is said of the order of structures beside others"""
-    clips: dict[Structure, StatedClip] = field(default_factory=dict)
+    clips: dict[Structure, Stated] = field(default_factory=dict)
     """what is said of the outlines that structures are clipped to"""
     written: dict[ast.Node, tuple[float, float] | float] = field(default_factory=dict)
     watched: frozenset[ast.Node] = frozenset()
@@ -287,8 +299,7 @@ class Interpreter:
     call_sites: list[ast.Node] = field(default_factory=list)
     hidden: list[tuple[Geometry, tuple[Comparison, ...]]] = field(default_factory=list)
     runaway: set[ast.Node] = field(default_factory=set)
-    copiers: list[Copier] = field(default_factory=list)
-    """the makers of the copies, in order"""
+    copiers: list[Copier] = field(default_factory=list)  # the makers of the copies, in order
     ahead: list[Ahead] = field(default_factory=list)
     edits: dict[ast.Call, CallEdit] = field(default_factory=dict)
     """calls that are run with their arguments changed"""
@@ -302,16 +313,14 @@ class Interpreter:
     text"""
     numbers: dict[ast.Number, Num] = field(default_factory=dict)
     """numbers of the text, which are the same each time they are met"""
-    fonts: dict[str, Font] = field(default_factory=dict)
-    """font files by path, as texts name them"""
+    fonts: dict[str, Font] = field(default_factory=dict)  # font files by path, as texts name them
     frames_turn: bool = False
     """the program mentions the rotation of structures, which a constraint on it frees"""
     root: Structure | None = None
     errors: int = 0
     entities: int = 0
     turns: int = 0
-    runs: int = 0
-    """of statements that finish corners"""
+    runs: int = 0  # of statements that finish corners
 
     # --- Reporting -----------------------------------------------------------------------------
 
@@ -456,16 +465,16 @@ class Interpreter:
         kept: bool = False,
         frame_of: Structure | None = None,
         cell: bool = False,
+        locked: bool = False,
+        outline: bool = False,
         since: str = "",
     ) -> ex.Expression:
-        """Makes an unknown, which the structure of its holder owns if no other does. Returns it as an
-        expression.
-        """
+        """Returns a new unknown as an expression; the structure of its holder owns it if no other does."""
         owner = owner or (holder.owner if isinstance(holder, Geometry) else holder)
         if not abs(guess) <= _LARGEST_GUESS:
             guess = self._tamed(guess, holder, name)
-        angular, implied = dimension == ANGLE, since != ""
-        new = Unknown(guess, owner, holder, name, kept, angular, frame_of, cell, since=since, implied=implied)
+        new = Unknown(guess, owner, holder, name, kept, dimension == ANGLE, frame_of, cell, exact=locked)
+        new.locked, new.outline, new.since, new.implied = locked, outline, since, since != ""
         self.unknowns.append(new)
         return ex.unknown(new)
 

@@ -14,18 +14,18 @@ from aidl_lang.building.construct import loose_point, refuses_measure
 from aidl_lang.building.copies import Copier
 from aidl_lang.building.curves import STILL, Motion, of_frame
 from aidl_lang.building.edits import GeometryPlacement, check_edit, edited, edits_on, is_edit
-from aidl_lang.building.evaluate import evaluate, iterate, truth, turn_scope
+from aidl_lang.building.evaluate import evaluate, truth, turns
 from aidl_lang.building.impose import record_assertion
 from aidl_lang.building.members import read_param
 from aidl_lang.building.model import Frame, Geometry, Holder, Structure, chain
 from aidl_lang.building.state import (
     Env,
     Executor,
+    Indices,
     Interpreter,
     LetBinding,
     ParamBinding,
     Reach,
-    Scope,
     VarBinding,
     indexed,
 )
@@ -42,6 +42,7 @@ from aidl_lang.building.values import (
     PointVal,
     StructureCopy,
     Value,
+    certain,
     holds,
     kind_of,
 )
@@ -54,14 +55,18 @@ from aidl_lang.syntax import ast
 
 
 def declare(
-    it: Interpreter, scope: Scope, name: ast.Identifier, indices: tuple[int, ...], value: Value | VarBinding
+    it: Interpreter, env: Env, name: ast.Identifier, value: Value | VarBinding, indices: Indices = ()
 ) -> None:
     """Gives a value a name in the structure or shape whose body this is."""
-    target = scope.declaring()
+    target = env.scope.declaring()
     if name in it.program.rejected:
         return
     if not indices:
-        if scope.turn and name.text in target.values and not isinstance(target.values[name.text], LetBinding):
+        if (
+            env.scope.turn
+            and name.text in target.values
+            and not isinstance(target.values[name.text], LetBinding)
+        ):
             message = f"`{name.text}` is declared in every turn of the loop"
             hint = f"give it an index: `{name.text}[i] = …`"
             it.report("E0208", message, name, label="the same name again", hints=[hint])
@@ -86,21 +91,16 @@ def declare(
         container.parts[name.text] = value
 
 
-def index_values(
-    it: Interpreter, nodes: Sequence[ast.Expression], scope: Scope, here: Structure
-) -> tuple[int, ...] | None:
+def index_values(it: Interpreter, nodes: Sequence[ast.Expression], env: Env) -> tuple[int, ...] | None:
     found: list[int] = []
     for node in nodes:
-        index = whole(it, evaluate(it, node, Env(scope, here, Reach.OWN)), node, "an index")
-        if index is None:
+        if (index := whole(it, evaluate(it, node, env), node, "an index")) is None:
             return None
         found.append(index)
     return tuple(found)
 
 
-def give_name(
-    geometry: Geometry, name: str, indices: tuple[int, ...], container: Holder, node: ast.Assign
-) -> None:
+def give_name(geometry: Geometry, name: str, indices: Indices, container: Holder, node: ast.Assign) -> None:
     geometry.name = indexed(name, indices)
     geometry.container = container
     geometry.construction = geometry.construction or node.construction
@@ -108,7 +108,7 @@ def give_name(
         geometry.span = node.span
 
 
-def adopt(value: Value, name: str, indices: tuple[int, ...], container: Holder, node: ast.Assign) -> None:
+def adopt(value: Value, name: str, indices: Indices, container: Holder, node: ast.Assign) -> None:
     """Gives nameless geometry the name it is assigned to; geometry with a name keeps it."""
     if isinstance(value, Geometry):
         if value.name is None:
@@ -133,21 +133,20 @@ class Assignment:
 
     it: Interpreter
     node: ast.Assign
-    scope: Scope
-    here: Structure
+    env: Env
     first: dict[Instantiation, tuple[Structure, Frame]] = field(default_factory=dict)
 
-    def whole(self, value: Value, indices: tuple[int, ...]) -> Value:
+    def whole(self, value: Value, indices: Indices) -> Value:
         """Returns the assignment's value: every structure in it made, every geometry of a pattern named."""
         match value:
             case Pattern() | StructureCopy(source=Structure()) if self.node.placement is not None:
                 self._stands(value)
         return self.value(value, indices)
 
-    def value(self, value: Value, indices: tuple[int, ...]) -> Value:
+    def value(self, value: Value, indices: Indices) -> Value:
         match value:
             case Instantiation():
-                return instantiate(self.it, self.node, value, self.scope, self.here, indices)
+                return instantiate(self.it, self.node, value, self.env, indices)
             case StructureCopy():
                 return self._copy(value, indices)
             case ListVal(items) if any(isinstance(i, _WAITING) for i in items):
@@ -169,14 +168,13 @@ class Assignment:
                     is_placed = any(a.name and a.name.text in ("center", "start") for a in call.arguments)
                     fix = None if is_placed else Fix("lay it out from there", (edit,), is_sure=True)
         else:
-            assert isinstance(value.source, Structure)
-            message = f"`{name}` is a copy, and its place follows from `{value.source.name}`"
+            source = certain(value.source, Structure)
+            message = f"`{name}` is a copy, and its place follows from `{source.name}`"
             hint = "say where it goes in the copy: `copy(x, by: (10, 0))`, `mirror(x, about: y_axis)`"
         self.it.report("E0330", message, self.node.placement, hints=[hint], fix=fix)
 
-    def _pattern(self, pattern: Pattern, indices: tuple[int, ...]) -> Pattern:
-        container = self.scope.declaring().container or self.here
-        name = self.node.name.text
+    def _pattern(self, pattern: Pattern, indices: Indices) -> Pattern:
+        container, name = self.env.holder, self.node.name.text
         give_name(pattern.settings, name, indices, container, self.node)
         pattern.name = indexed(name, indices)
         for index, member in pattern.members.items():
@@ -195,17 +193,17 @@ class Assignment:
                 if unknown.holder is pattern.settings and not unknown.kept:
                     unknown.frame_of = structure
 
-    def _copy(self, copy: StructureCopy, indices: tuple[int, ...]) -> Value:
+    def _copy(self, copy: StructureCopy, indices: Indices) -> Value:
         motion, source = copy.motion, copy.source
         if isinstance(source, Structure):
-            return self._of(source, _framed(source, self.here), motion, indices)
+            return self._of(source, _framed(source, self.env.here), motion, indices)
         if (known := self.first.get(source)) is not None:
             return self._of(known[0], known[1], motion, indices)
         return self._instance(source, motion, indices, copy)
 
     def _instance(
-        self, template: Instantiation, motion: Motion, indices: tuple[int, ...], copy: StructureCopy
-    ) -> Structure | Nothing:
+        self, template: Instantiation, motion: Motion, indices: Indices, copy: StructureCopy
+    ) -> Value:
         if not (motion.scale.is_constant and motion.scale.value == 1.0):
             message = f"`{template.signature.name}` makes a structure of the sizes that it is given"
             hint = "pass it other sizes, or name the structure first and scale a copy of it"
@@ -222,14 +220,12 @@ class Assignment:
             own.append(frame)
             return motion.frame(own[0])
 
-        made = instantiate(self.it, self.node, template, self.scope, self.here, indices, framed)
+        made = instantiate(self.it, self.node, template, self.env, indices, framed)
         if isinstance(made, Structure):
             self.first[template] = made, own[0]
         return made
 
-    def _of(
-        self, source: Structure, frame: Frame, motion: Motion, indices: tuple[int, ...]
-    ) -> Structure | Nothing:
+    def _of(self, source: Structure, frame: Frame, motion: Motion, indices: Indices) -> Value:
         outward = (g for g in self.it.following if not g.bound_to.is_within(source))
         follower = next((g for g in outward if g.owner.is_within(source)), None)
         if follower is not None:
@@ -242,8 +238,8 @@ class Assignment:
         inside = STILL if scale.is_constant and scale.value == 1.0 else replace(STILL, scale=scale)
         copier = Copier(self.it, None, inside, span=self.node.span)
         name = indexed(self.node.name.text, indices)
-        made = copier.structure(source, self.here, name, motion.frame(frame))
-        read_attributes(self.it, made, self.node.attributes, self.scope, self.scope)
+        made = copier.structure(source, self.env.here, name, motion.frame(frame))
+        read_attributes(self.it, made, self.node.attributes, self.env.scope, self.env.scope)
         return made
 
 
@@ -255,33 +251,28 @@ def _framed(source: Structure, here: Structure) -> Frame:
     return frame
 
 
-def _assign(it: Interpreter, node: ast.Assign, scope: Scope, here: Structure) -> None:
-    indices = index_values(it, node.indices, scope, here)
-    if indices is None:
+def _assign(it: Interpreter, node: ast.Assign, env: Env) -> None:
+    if (indices := index_values(it, node.indices, env)) is None:
         return
-    value = _made(it, node, scope, here, indices)
+    value = _made(it, node, env, indices)
     if isinstance(value, Nothing):
-        declare(it, scope, node.name, indices, NOTHING)
+        declare(it, env, node.name, NOTHING, indices)
         return
     is_new = isinstance(value, Instantiation | StructureCopy | Pattern)
     was_there = holds(value, Structure)
-    value = Assignment(it, node, scope, here).whole(value, indices)
-    container = scope.declaring().container or here
+    value = Assignment(it, node, env).whole(value, indices)
     if not is_new:
-        value = _named(it, node, value, scope, here, indices)
+        value = _named(it, node, value, env, indices)
     if was_there or not holds(value, Structure):  # otherwise the structures made here have their own
-        read_own_attributes(it, node, value, container, scope)
+        read_own_attributes(it, node, value, env)
     if not indices and not isinstance(value, Array | Structure | Geometry | ListVal | PointVal):
-        scope.values[node.name.text] = LetBinding(node.value, scope)
+        env.scope.values[node.name.text] = LetBinding(node.value, env.scope)
         return
-    declare(it, scope, node.name, indices, value)
+    declare(it, env, node.name, value, indices)
 
 
-def _made(
-    it: Interpreter, node: ast.Assign, scope: Scope, here: Structure, indices: tuple[int, ...]
-) -> Value:
+def _made(it: Interpreter, node: ast.Assign, env: Env, indices: Indices) -> Value:
     """Returns the value of an assignment: placed, and edited by the statements below it."""
-    env = Env(scope, here, Reach.OWN)
     value = evaluate(it, node.value, env)
     if isinstance(value, Nothing | Instantiation):
         return value
@@ -292,27 +283,21 @@ def _made(
         elif not isinstance(value, StructureCopy | Pattern):
             message = f"`at` and `rotated` place one structure or geometry, not {kind_of(value)}"
             it.report("E0509", message, node.placement, hints=["place each thing where it is made"])
-    return edited(it, node, value, edits_on(it, node.name.text, indices, scope), env, placed)
+    return edited(it, node, value, edits_on(it, node.name.text, indices, env.scope), env, placed)
 
 
-def _named(
-    it: Interpreter, node: ast.Assign, value: Value, scope: Scope, here: Structure, indices: tuple[int, ...]
-) -> Value:
+def _named(it: Interpreter, node: ast.Assign, value: Value, env: Env, indices: Indices) -> Value:
     """Returns the value under its new name: a literal point becomes geometry."""
-    container = scope.declaring().container or here
-    if isinstance(value, PointVal) or (
-        isinstance(value, ListVal) and not indices and _is_literal_point(node.value)
-    ):
-        at = as_point(it, value, node.value, Env(scope, here, Reach.OWN))
-        if at is None:
+    is_list = isinstance(value, ListVal) and not indices and _is_literal_point(node.value)
+    if isinstance(value, PointVal) or is_list:
+        if (at := as_point(it, value, node.value, env)) is None:
             return value
         it.count_entity(node)
-        dot = Geometry("point", here, it.place(node))
-        give_name(dot, node.name.text, indices, container, node)
+        dot = Geometry("point", env.here, it.place(node))
+        give_name(dot, node.name.text, indices, env.holder, node)
         dot.fields = {"at": loose_point(it, at, dot)}
         return dot
-    if isinstance(value, Geometry | ListVal):
-        adopt(value, node.name.text, indices, container, node)
+    adopt(value, node.name.text, indices, env.holder, node)
     return value
 
 
@@ -322,18 +307,14 @@ def _is_literal_point(node: ast.Expression) -> bool:
     return all(isinstance(i, ast.Number | ast.Unary) for i in node.items)
 
 
-def _structure(it: Interpreter, node: ast.Structure, scope: Scope, here: Structure) -> None:
-    if node.parameters is not None:
-        return
-    indices = index_values(it, node.indices, scope, here)
-    if indices is not None:
-        made = build_structure(it, node, scope, here, indices)
-        declare(it, scope, node.name, indices, made)
+def _structure(it: Interpreter, node: ast.Structure, env: Env) -> None:
+    if node.parameters is None and (indices := index_values(it, node.indices, env)) is not None:
+        declare(it, env, node.name, build_structure(it, node, env.scope, env.here, indices), indices)
 
 
-def _param(it: Interpreter, node: ast.Param, scope: Scope, here: Structure) -> None:
-    binding = scope.values.get(node.name.text)
-    if scope.turn:
+def _param(it: Interpreter, node: ast.Param, env: Env) -> None:
+    binding = env.scope.values.get(node.name.text)
+    if env.scope.turn:
         message = f"`param {node.name.text}` would be made in every turn of the loop"
         hint = "put the `param` before the loop, or use a `let` of the loop variable"
         it.report("E0208", message, node.name, hints=[hint])
@@ -341,65 +322,59 @@ def _param(it: Interpreter, node: ast.Param, scope: Scope, here: Structure) -> N
         read_param(it, binding, node)
 
 
-def _var(it: Interpreter, node: ast.Var, scope: Scope, here: Structure) -> None:
-    value = evaluate(it, node.value, Env(scope, here, Reach.OWN))
+def _var(it: Interpreter, node: ast.Var, env: Env) -> None:
+    value = evaluate(it, node.value, env)
     if isinstance(value, Nothing):
         return
-    found = numeric(it, value, node.value, Env(scope, here, Reach.OWN))
-    if found is None:
-        declare(it, scope, node.name, (), NOTHING)
+    found = numeric(it, value, node.value, env)
+    if found is None or found.status is Exactness.FIXED:  # of which nothing is left to find
+        declare(it, env, node.name, found or NOTHING)
         return
-    if found.status is Exactness.FIXED:
-        declare(it, scope, node.name, (), found)  # nothing is left to find
-        return
-    holder = scope.declaring().container or here
     if not refuses_measure(it, found, node.value.span) and not math.isfinite(found.value):
         it.report("E0504", f"`{node.value.span.one_line}` has no value at the first guesses", node.value)
-    made = it.unknown(found.value, holder, node.name.text, dimension=found.dimension)
-    assert isinstance(made.payload, ex.Unknown)
-    it.became(found, made, holder, node.name.text, found.dimension)
-    var = VarBinding(Num(made, found.dimension, Exactness.REFERENCE), made.payload)
-    declare(it, scope, node.name, (), var)
+    made = it.unknown(found.value, env.holder, node.name.text, dimension=found.dimension)
+    it.became(found, made, env.holder, node.name.text, found.dimension)
+    number = Num(made, found.dimension, Exactness.REFERENCE)
+    declare(it, env, node.name, VarBinding(number, certain(made.payload, ex.Unknown)))
 
 
-def _for(it: Interpreter, node: ast.For, scope: Scope, here: Structure) -> None:
+def _for(it: Interpreter, node: ast.For, env: Env) -> None:
     for name in declared_names(node.body, indexed=True):
-        scope.declaring().values.setdefault(name, Array(name))  # even if the loop has no turn
-    for item in iterate(it, node.iterable, Env(scope, here, Reach.OWN)) or ():
-        it.count_turn(node)
-        run_block(it, node.body.statements, turn_scope(it, scope, node.variables, item, node), here)
+        env.scope.declaring().values.setdefault(name, Array(name))  # even if the loop has no turn
+    for turn in turns(it, node, env) or ():
+        run_block(it, node.body.statements, turn)
 
 
-def _if(it: Interpreter, node: ast.If, scope: Scope, here: Structure) -> None:
-    test = evaluate(it, node.test, Env(scope, here, Reach.OWN))
+def _if(it: Interpreter, node: ast.If, env: Env) -> None:
+    test = evaluate(it, node.test, env)
     if isinstance(test, Nothing):
         return
     both = (node.then, node.otherwise)
     taken, left_out = both if truth(it, test, node.test) else both[::-1]
     if left_out is not None:
-        scope.unbuilt |= dict.fromkeys(declared_names(left_out), node)
+        env.scope.unbuilt |= dict.fromkeys(declared_names(left_out), node)
     if taken is not None:
-        run_block(it, taken.statements, scope, here)
+        run_block(it, taken.statements, env)
 
 
-def _expression(it: Interpreter, node: ast.ExpressionStatement, scope: Scope, here: Structure) -> None:
+def _expression(it: Interpreter, node: ast.ExpressionStatement, env: Env) -> None:
     """Checks an edit, which was applied where the thing was made; defers everything else as a constraint."""
-    if isinstance(node.value, ast.Call) and is_edit(it, node.value, scope):
-        check_edit(it, node.value, Env(scope, here, Reach.OWN))
+    if isinstance(node.value, ast.Call) and is_edit(it, node.value, env.scope):
+        check_edit(it, node.value, env)
     else:
-        _defer(it, node, scope, here)
+        _defer(it, node, env)
 
 
-def _defer(it: Interpreter, node: ast.Statement, scope: Scope, here: Structure) -> None:
-    it.pending.setdefault(here, []).append((node, scope))
+def _defer(it: Interpreter, node: ast.Statement, env: Env) -> None:
+    it.pending.setdefault(env.here, []).append((node, env))
 
 
-def _assert(it: Interpreter, node: ast.Assert, scope: Scope, here: Structure) -> None:
+def _assert(it: Interpreter, node: ast.Assert, env: Env) -> None:
     """Checks an assertion on the arguments of a shape where that is made; defers any other."""
-    if isinstance(container := scope.declaring().container, Geometry):
-        record_assertion(it, node, Env(scope, here, Reach.READ), container.type)
+    if isinstance(env.holder, Geometry):
+        record_assertion(it, node, env.reaching(Reach.READ), env.holder.type)
     else:
-        _defer(it, node, scope, here)
+        _defer(it, node, env)
 
 
 EXECUTORS: Mapping[type, Executor] = {

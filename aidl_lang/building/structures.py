@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from functools import cache
 from pathlib import PurePath
 
@@ -12,7 +12,7 @@ from aidl_lang.building.attributes import read_attributes, settle_clips_in, sett
 from aidl_lang.building.calls import default_of, hoist_callables, hoist_values, run_block
 from aidl_lang.building.coerce import as_point, numeric
 from aidl_lang.building.construct import hidden_constraints, loose_place, solvable
-from aidl_lang.building.edits import EditCall, edits_on, frame_edited
+from aidl_lang.building.edits import Edits, edits_on, frame_edited
 from aidl_lang.building.evaluate import evaluate
 from aidl_lang.building.impose import read_constraint
 from aidl_lang.building.members import passed, read_param, report_unused
@@ -37,6 +37,7 @@ from aidl_lang.building.values import (
     Nothing,
     Num,
     PointVal,
+    certain,
     number,
     type_of,
 )
@@ -59,16 +60,15 @@ _LOST = {
     "thread": "no drawing sheet tells of its thread",
 }
 """By attribute of a cut, what is missing where its circle stands alone."""
-_PLACED_IN = ("solid", "assembly")
-"""Kinds of structures in which the name of a cut means a whole hole."""
+_PLACED_IN = ("solid", "assembly")  # kinds of structures in which the name of a cut means a whole hole
 
 
-def tell_plain_cuts(it: Interpreter, hole: ast.Structure, scope: Scope, around: str) -> None:
-    """Tells of cuts in a hole that are deep or have a thread where they are placed in a solid. `around`
-    is the kind of the structure that the hole is in.
-    """
-    if hole.span.source in it.library_sources or any(a.name.text in _LOST for a in hole.attributes):
+def tell_plain_cuts(it: Interpreter, hole: ast.Structure, scope: Scope, around: Structure | None) -> None:
+    """Tells of cuts in a hole that are deep or have a thread where they are placed in a solid."""
+    is_standard = hole.span.source in it.library_sources
+    if hole.kind != "hole" or is_standard or any(a.name.text in _LOST for a in hole.attributes):
         return
+    is_placed = around is not None and around.kind in _PLACED_IN
     nodes = list(ast.walk(hole.body))
     inner = [node.span for node in nodes if isinstance(node, ast.Structure)]
     for statement in nodes:
@@ -81,7 +81,7 @@ def tell_plain_cuts(it: Interpreter, hole: ast.Structure, scope: Scope, around: 
             templates = [c.signature.node for c in found if c.signature.standard]
             placed = next((node for node in templates if isinstance(node, ast.Structure)), None)
             if placed is not None and found[0].signature.standard:
-                _tell(it, call, hole, placed, _fix(hole, statement, placed) if around in _PLACED_IN else None)
+                _tell(it, call, hole, placed, _fix(hole, statement, placed) if is_placed else None)
 
 
 def _tell(
@@ -121,8 +121,7 @@ def _fix(hole: ast.Structure, statement: ast.Assign, placed: ast.Structure) -> F
 
 # --- Structures, in place and from templates, with their frames and, if they are empty, their boxes.
 
-_PLAN = 10.0
-"""Width and height at which the box of an empty structure starts, in mm."""
+_PLAN = 10.0  # width and height at which the box of an empty structure starts, in mm
 
 
 def build_structure(
@@ -134,12 +133,9 @@ def build_structure(
     structure.doc = node.doc
     edits = edits_on(it, node.name.text, indices, scope) if parent is not None else ()
     _place(it, structure, node.placement, scope, edits)
-    body = Scope(_around(scope, node.name.text, structure), structure, labels=scope.labels)
-    structure.scope = body
-    own_names(body, structure)
-    run_block(it, node.body.statements, body, structure)
-    if node.kind == "hole":
-        tell_plain_cuts(it, node, body, "" if parent is None else parent.kind)
+    body = _body(structure, node.name.text, scope, scope.labels)
+    run_block(it, node.body.statements, Env(body, structure))
+    tell_plain_cuts(it, node, body, parent)
     # what is said of the root may name its params, as nothing is around it
     read_attributes(it, structure, node.attributes, body if parent is None else scope, body)
     finish(it, structure)
@@ -150,31 +146,24 @@ def instantiate(
     it: Interpreter,
     node: ast.Assign,
     template: Instantiation,
-    scope: Scope,
-    here: Structure,
+    env: Env,
     indices: tuple[int, ...],
     framed: Callable[[Frame], Frame] | None = None,
 ) -> Structure | Nothing:
     """Builds an instance of a template under its assigned name; `framed` moves its frame elsewhere."""
-    definition = template.definition
-    name = indexed(node.name.text, indices)
+    definition, scope, here = template.definition, env.scope, env.here
     if not it.enter(template.node, definition):
         return NOTHING
     try:
-        structure = _new(it, definition.kind, name, here, node)
+        structure = _new(it, definition.kind, indexed(node.name.text, indices), here, node)
         structure.doc = definition.doc
         _place(it, structure, node.placement, scope, edits_on(it, node.name.text, indices, scope))
-        assert isinstance(template.scope, Scope)
-        around = _around(template.scope, definition.name.text, structure)
-        body = Scope(around, structure, labels=scope.labels)
-        structure.scope = body
-        own_names(body, structure)
+        body = _body(structure, definition.name.text, certain(template.scope, Scope), scope.labels)
         for parameter, (key, kind, _) in zip(
             definition.parameters or (), template.signature.parameters, strict=True
         ):
-            value = template.arguments.get(key)
-            if value is None:
-                value = default_of(it, parameter, kind, Env(body, structure, Reach.OWN))
+            if (value := template.arguments.get(key)) is None:
+                value = default_of(it, parameter, kind, Env(body, structure))
             given = (a.value for a in template.node.arguments if a.name is not None and a.name.text == key)
             body.values[key] = passed(it, key, value, structure, here, next(given, parameter))
         read_attributes(it, structure, definition.attributes, body, body)
@@ -183,9 +172,8 @@ def instantiate(
             _place(it, structure, definition.placement, body)
         if framed is not None:
             structure.frame = framed(structure.frame)
-        run_block(it, definition.body.statements, body, structure)
-        if definition.kind == "hole":
-            tell_plain_cuts(it, definition, body, here.kind)
+        run_block(it, definition.body.statements, Env(body, structure))
+        tell_plain_cuts(it, definition, body, here)
         finish(it, structure)
     finally:
         it.leave()
@@ -202,27 +190,25 @@ def _new(it: Interpreter, kind: str, name: str, parent: Structure | None, node: 
     return structure
 
 
-def _around(scope: Scope, name: str, structure: Structure) -> Scope:
-    """Returns the scope around a body, with its structure by name, which is no member of it."""
+def _body(structure: Structure, name: str, scope: Scope, labels: tuple[str, ...]) -> Scope:
+    """Returns the scope of a body, in which its structure, which is no member of it, is known by name."""
     around = Scope(scope)
     around.values[name] = structure
-    return around
+    structure.scope = body = Scope(around, structure, labels=labels)
+    own_names(body, structure)
+    return body
 
 
 def _place(
-    it: Interpreter,
-    s: Structure,
-    placement: ast.Placement | None,
-    scope: Scope,
-    edits: Sequence[EditCall] = (),
+    it: Interpreter, s: Structure, node: ast.Placement | None, scope: Scope, edits: Edits = ()
 ) -> None:
     """Sets the frame: `at` is a position, `rotated` is exact unless it is a guess or an unknown."""
     if s.parent is None:
-        if placement is not None:
+        if node is not None:
             message = "the root's frame is fixed, so `at` and `rotated` change nothing here"
-            it.report("W0502", message, placement)
+            it.report("W0502", message, node)
         return
-    at, turn = place_of(it, placement, Env(scope, s.parent, Reach.OWN))
+    at, turn = place_of(it, node, Env(scope, s.parent))
     if edits:
         at, turn = frame_edited(it, edits, s, at, turn)
     x, y = loose_place(it, at, s)
@@ -231,9 +217,9 @@ def _place(
         rotation = it.unknown(turn.value, s, ROTATION, owner=s.parent, dimension=ANGLE, frame_of=s)
         it.became(turn, rotation, s, ROTATION, ANGLE)
     elif it.frames_turn and (turn is None or turn.status is Exactness.NUMBER) and rotation.is_constant:
-        rotation = it.unknown(rotation.value, s, ROTATION, owner=s.parent, dimension=ANGLE, frame_of=s)
-        assert isinstance(rotation.payload, ex.Unknown)
-        rotation.payload.locked = rotation.payload.exact = True
+        rotation = it.unknown(
+            rotation.value, s, ROTATION, owner=s.parent, dimension=ANGLE, frame_of=s, locked=True
+        )
     s.frame = Frame(x, y, rotation)
 
 
@@ -253,8 +239,7 @@ def _rotation(it: Interpreter, placement: ast.Placement | None, env: Env) -> Num
     if placement is None or placement.rotated is None:
         return None
     value = evaluate(it, placement.rotated, env)
-    found = numeric(it, value, placement.rotated, env)
-    if found is None:
+    if (found := numeric(it, value, placement.rotated, env)) is None:
         return None
     if found.dimension not in (None, ANGLE):
         wrong = rules.unwanted("`rotated`", NumberType(ANGLE), type_of(found), shown(placement.rotated))
@@ -272,8 +257,8 @@ def finish(it: Interpreter, structure: Structure) -> None:
     settle_clips_in(it, structure)
     pending = it.pending.pop(structure, [])
     # Finished corners first, as constraints may mention their sizes, wherever they are written.
-    for node, scope in sorted(pending, key=lambda item: not _finishes(it, item[0])):
-        read_constraint(it, node, scope, structure)
+    for node, env in sorted(pending, key=lambda item: not _finishes(it, item[0])):
+        read_constraint(it, node, env.reaching(Reach.SUBTREE))
 
 
 def _finishes(it: Interpreter, node: ast.Statement) -> bool:
@@ -285,12 +270,9 @@ def _finishes(it: Interpreter, node: ast.Statement) -> bool:
 def _plan(it: Interpreter, s: Structure) -> None:
     half = _PLAN / 2
     left, bottom, width, height = (
-        it.unknown(guess, s, name, owner=s, dimension=LENGTH)
+        it.unknown(guess, s, name, owner=s, dimension=LENGTH, outline=True)
         for name, guess in (("left", -half), ("bottom", -half), ("width", _PLAN), ("height", _PLAN))
     )
-    for side in (left, bottom, width, height):
-        assert isinstance(side.payload, ex.Unknown)
-        side.payload.outline = True
     s.plan = (left, bottom, width, height)
 
 
@@ -306,7 +288,7 @@ def run_module(it: Interpreter) -> Structure:
     loose = [s for s in statements if not isinstance(s, (*ast.DEFINITIONS, ast.Structure))]
     if len(roots) == 1 and not loose:
         it.root = root = Structure("assembly", "", None, None)
-        hoist_values(scope, statements, root)
+        hoist_values(Env(scope, root), statements)
         for binding in list(scope.values.values()):
             if isinstance(binding, ParamBinding):
                 read_param(it, binding, binding.node)
@@ -317,7 +299,7 @@ def run_module(it: Interpreter) -> Structure:
         root.scope = scope
         scope.container = root
         own_names(scope, root)
-        run_block(it, statements, scope, root)
+        run_block(it, statements, Env(scope, root))
         finish(it, root)
         if not roots and not loose and not it.diagnostics:
             hint = "a drawing needs a structure, as in `solid plate { … }`"
@@ -339,7 +321,7 @@ def _file_scope(
     for statement in module.statements:
         if isinstance(statement, ast.Import) and (other := it.program.imports.get(statement)) is not None:
             inner = _file_scope(it, other, library, loading)
-            hoist_values(inner, other.statements, Structure("assembly", "", None, None))
+            hoist_values(Env(inner, Structure("assembly", "", None, None)), other.statements)
             _bring_in(scope, inner, statement, is_drawing=other.source in it.program.resolution.drawings)
     return scope
 

@@ -7,7 +7,7 @@ from enum import IntEnum
 from typing import TYPE_CHECKING, TypeAlias, TypeVar
 
 from aidl_lang.building import expression as ex
-from aidl_lang.building.expression import Expression
+from aidl_lang.building.expression import Expression, Place
 from aidl_lang.checking.types import (
     ANY,
     ListType,
@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from aidl_lang.building.boxes import Box
     from aidl_lang.building.curves import Motion
     from aidl_lang.building.model import Condition, Geometry, Structure
+    from aidl_lang.building.state import Scope
 
 T = TypeVar("T")
 
@@ -76,6 +77,10 @@ class PointVal:
 
     x: Num
     y: Num
+
+    @property
+    def place(self) -> Place:
+        return Place(self.x.expression, self.y.expression)
 
 
 @record(slots=True)
@@ -151,7 +156,7 @@ class Instantiation:
     value_type = StructureType()
 
     signature: Signature
-    scope: object
+    scope: Scope | None
     definition: ast.Structure
     arguments: Mapping[str, Value]
     node: ast.Call
@@ -256,6 +261,12 @@ def point(x: Expression, y: Expression, status: Exactness = Exactness.REFERENCE)
     return PointVal(Num(x, LENGTH, status), Num(y, LENGTH, status))
 
 
+def certain(value: object, kind: type[T]) -> T:
+    """Returns a value of which it is known, as from the choice of an overload, that it is of a kind."""
+    assert isinstance(value, kind)
+    return value
+
+
 def numbers_of(value: Value) -> tuple[Num, ...]:
     """Returns a number, or both coordinates of a point; none for anything else."""
     return (value,) if isinstance(value, Num) else (value.x, value.y) if isinstance(value, PointVal) else ()
@@ -302,8 +313,7 @@ def each_of(value: Value, kind: type[T]) -> Iterator[T]:
 
 def leaves(value: Value) -> Iterator[Value]:
     """Yields a value, or what a list or an array holds, at any depth."""
-    items = members(value)
-    if items is None:
+    if (items := members(value)) is None:
         yield value
     else:
         for item in items:

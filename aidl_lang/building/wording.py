@@ -11,7 +11,7 @@ from aidl_lang.building import expression as ex
 from aidl_lang.building.boxes import box_of, boxes_in, source_unknowns, spelled_out
 from aidl_lang.building.coerce import as_point, numeric
 from aidl_lang.building.expression import Expression, Unknown
-from aidl_lang.building.model import Comparison, Condition, Geometry, Structure
+from aidl_lang.building.model import Comparison, Condition, Geometry, Part, Structure
 from aidl_lang.building.state import Env, Interpreter, Stop
 from aidl_lang.building.values import (
     NOTHING,
@@ -22,6 +22,7 @@ from aidl_lang.building.values import (
     PointVal,
     TextVal,
     Value,
+    certain,
     leaves,
     members,
     numbers_of,
@@ -39,6 +40,8 @@ from aidl_lang.common.source import Span
 from aidl_lang.syntax import ast
 
 # --- Conditions: comparing values, joining comparisons, and testing whether a condition holds.
+
+Evaluate = Callable[[Expression], float]
 
 RELATIONS = ("==", "<=", ">=", "<", ">")
 """Relations that can constrain; `!=` can only be asserted or tested."""
@@ -164,8 +167,7 @@ def conjunction(it: Interpreter, operator: str, left: Value, right: Value, node:
         return left
     if isinstance(left, bool) or isinstance(right, bool):
         return not neutral
-    assert isinstance(left, Condition)
-    assert isinstance(right, Condition)
+    left, right = certain(left, Condition), certain(right, Condition)
     if left.operator == right.operator == operator:
         return Condition(operator, left.parts + right.parts)
     return Condition(operator, (left, right))
@@ -186,7 +188,7 @@ def negation(it: Interpreter, value: Value, node: ast.Node) -> Value:
 
 def all_of(parts: Iterable[Value]) -> Value:
     """Returns the conjunction of conditions; NOTHING if one of them failed."""
-    found: list[Condition | Comparison | bool] = []
+    found: list[Part] = []
     for part in parts:
         if isinstance(part, Nothing):
             return NOTHING
@@ -197,16 +199,8 @@ def all_of(parts: Iterable[Value]) -> Value:
     return Condition("and", tuple(found)) if found else True
 
 
-def holds(
-    condition: Condition | Comparison | bool,
-    evaluate: Callable[[Expression], float],
-    tolerance: float,
-    *,
-    strict: bool = False,
-) -> bool:
-    """Tells whether a condition is true at given values, within a tolerance relative to their size; `strict`
-    keeps `<` and `>` from holding for equals.
-    """
+def holds(condition: Part, evaluate: Evaluate, tolerance: float, *, strict: bool = False) -> bool:
+    """Tells whether a condition is true within a relative tolerance; `strict`: equals are not `<`, `>`."""
     if isinstance(condition, bool):
         return condition
     if isinstance(condition, Comparison):
@@ -233,7 +227,7 @@ def placed_by(comparison: Comparison, placed: frozenset[Unknown], parties: Parti
 
 def replace_placed(condition: Condition, placed: frozenset[Unknown], parties: Parties = ()) -> Condition:
     """Returns the same condition, with other unknowns moving first."""
-    parts: list[Condition | Comparison | bool] = []
+    parts: list[Part] = []
     for part in condition.parts:
         if isinstance(part, Comparison):
             part = placed_by(part, placed, parties)
@@ -311,13 +305,10 @@ def _is_exact(value: Value | None) -> bool:
 
 _DIGITS = range(6, 18)
 """Significant digits in which a number is shown: the fewest that tell the two sides apart."""
-_GIVEN = 4
-"""Places that are shown at most."""
+_GIVEN = 4  # places that are shown at most
 
-_ROUNDED = 1e-4
-"""Relative difference up to which two numbers may be one and its rounding."""
+_ROUNDED = 1e-4  # relative difference up to which two numbers may be one and its rounding
 
-Evaluate = Callable[[Expression], float]
 Stated = tuple[ast.Expression, str, ast.Expression]
 
 

@@ -11,6 +11,7 @@ from aidl_lang.checking.types import (
     AnyType,
     ArgumentSource,
     Binding,
+    Given,
     GivenArgument,
     ListType,
     Mismatch,
@@ -195,11 +196,10 @@ COORDINATES: tuple[tuple[str, str, tuple[str, ...]], ...] = (
 
 Outcomes: TypeAlias = Sequence[Binding | Mismatch]
 
-_MOST_KEPT = 16
-"""Arguments of a call whose outcomes are cached: hardly any has more, and those take memory."""
+_MOST_KEPT = 16  # arguments of a call whose outcomes are cached: hardly any has more, and those take memory
 
 
-def outcomes(candidates: Sequence[Signature], given: Sequence[GivenArgument]) -> Outcomes:
+def outcomes(candidates: Sequence[Signature], given: Given) -> Outcomes:
     """Returns the candidates that fit, perhaps beside mismatches, or else a mismatch for each. Arguments are
     read in other words only if none takes them as written. The author's own definitions come before the
     standard ones of that name.
@@ -215,7 +215,7 @@ def _of_standard(candidates: tuple[Signature, ...], given: tuple[GivenArgument, 
     return tuple(_outcomes(candidates, given))
 
 
-def _outcomes(candidates: Sequence[Signature], given: Sequence[GivenArgument]) -> Outcomes:
+def _outcomes(candidates: Sequence[Signature], given: Given) -> Outcomes:
     words = {fold(g.name) for g in given if g.name is not None}
     positional = sum(g.name is None for g in given)
     own = [candidate for candidate in candidates if not candidate.standard]
@@ -237,7 +237,7 @@ def _outcomes(candidates: Sequence[Signature], given: Sequence[GivenArgument]) -
     return loose
 
 
-def select(candidates: Sequence[Signature], given: Sequence[GivenArgument]) -> Binding | list[Mismatch]:
+def select(candidates: Sequence[Signature], given: Given) -> Binding | list[Mismatch]:
     """Returns the candidate that fits best (least conversion, then fewest bare numbers for an angle that may
     be left out, then fewest defaults, then first written), or all mismatches.
     """
@@ -246,9 +246,7 @@ def select(candidates: Sequence[Signature], given: Sequence[GivenArgument]) -> B
     return min(fits, key=lambda b: b.cost) if fits else [o for o in found if isinstance(o, Mismatch)]
 
 
-def _agreeing(
-    found: Outcomes, given: Sequence[GivenArgument], asked: Iterable[int]
-) -> list[Binding | Mismatch]:
+def _agreeing(found: Outcomes, given: Given, asked: Iterable[int]) -> list[Binding | Mismatch]:
     """Returns the candidates that fit; a mismatch if one of the arguments `asked` for is one parameter here
     and another there, and does not say which by its name.
     """
@@ -262,7 +260,7 @@ def _agreeing(
     return list(fits)
 
 
-def in_order(candidates: Sequence[Signature], given: Sequence[GivenArgument]) -> Mapping[int, str]:
+def in_order(candidates: Sequence[Signature], given: Given) -> Mapping[int, str]:
     """Returns the parameters that the arguments without a name would fill, by their index, if they all went
     to parameters that are not named; none if no candidate takes them so, or candidates differ about it.
     """
@@ -272,15 +270,13 @@ def in_order(candidates: Sequence[Signature], given: Sequence[GivenArgument]) ->
     return {i: name for i, name in found.pop() if name is not None} if len(found) == 1 else {}
 
 
-def _following(given: Sequence[GivenArgument]) -> Sequence[int]:
+def _following(given: Given) -> Sequence[int]:
     """Returns the arguments without a name behind the first that has one, by their index."""
     first = next((i for i, g in enumerate(given) if g.name is not None), len(given))
     return [i for i in range(first, len(given)) if given[i].name is None]
 
 
-def _filling(
-    signature: Signature, given: Sequence[GivenArgument], following: Sequence[int]
-) -> Binding | Mismatch:
+def _filling(signature: Signature, given: Given, following: Sequence[int]) -> Binding | Mismatch:
     """Matches some arguments without a name to the parameters that nothing else fills, in their order;
     without a centre that may be left out if they do not begin with it.
     """
@@ -311,7 +307,7 @@ def _ambiguous(signature: Signature, word: str | None, meant: Sequence[str], ind
     return Mismatch(signature, f"does not tell{by} whether {names} is meant", index, tuple(meant))
 
 
-def _loosely(signature: Signature, given: Sequence[GivenArgument]) -> Binding | Mismatch:
+def _loosely(signature: Signature, given: Given) -> Binding | Mismatch:
     """Matches arguments to the parameters of one callable in other words than theirs."""
     read = [(replace(g), ArgumentSource(i)) for i, g in enumerate(given)]
     read = _without_flag(signature, read)

@@ -262,7 +262,7 @@ FOLLOWED = {"text": ("along", "fit")}
 """Arguments by which a shape follows geometry that is there, an ancestor's included."""
 
 CONNECTING = word_set(
-    "coil spring chain cord wire hose hose_way ray_lines strip ram link hinge bracket fitted_text",
+    "coil spring chain cord wire hose hose_way ray_lines strip ram link hinge bracket fitted_text"
 )
 """Shapes of the library that follow points, an ancestor's included, and hold no equations."""
 

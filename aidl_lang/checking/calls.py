@@ -7,13 +7,13 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import reduce
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 
 from aidl_lang.checking import builtins, rules
 from aidl_lang.checking.binding import outcomes
 from aidl_lang.checking.builtins import COPYING, EDITS, FINISHES, MATH, PATTERNS, PRIMITIVE, is_word
 from aidl_lang.checking.complaints import meant_outside
-from aidl_lang.checking.facts import CONSTANT, NOTHING_READ, UNKNOWN, Fact, ReadPlace, joined, result
+from aidl_lang.checking.facts import CONSTANT, NOTHING_READ, UNKNOWN, Fact, Reads, joined, result
 from aidl_lang.checking.resolve import made_by
 from aidl_lang.checking.rules import place_before, shown
 from aidl_lang.checking.symbols import Symbol, SymbolKind
@@ -41,10 +41,13 @@ from aidl_lang.syntax import ast
 if TYPE_CHECKING:
     from aidl_lang.checking.infer import Inference
 
+Nodes: TypeAlias = Sequence[ast.Expression]
+Facts: TypeAlias = Sequence[Fact]
+
 # --- Calls with another meaning in other languages: squares, angles, corners and flags.
 
 
-def check_habits(check: Inference, node: ast.Call, nodes: Sequence[ast.Expression], fit: Binding) -> None:
+def check_habits(check: Inference, node: ast.Call, nodes: Nodes, fit: Binding) -> None:
     """Notes how a call was read if the same words mean something else in other languages."""
     _check_angles(check, node, nodes, fit)
     _check_corner(check, node, fit)
@@ -135,7 +138,7 @@ def check_unused_params(check: Inference) -> None:
             check.report("W0201", message, symbol.node.name, hints=[hint])
 
 
-def _check_angles(check: Inference, node: ast.Call, nodes: Sequence[ast.Expression], fit: Binding) -> None:
+def _check_angles(check: Inference, node: ast.Call, nodes: Nodes, fit: Binding) -> None:
     """Reports numbers of radians read as degrees, and the reverse."""
     called = check.called(node)
     for index, value in enumerate(nodes):
@@ -224,8 +227,7 @@ def call(check: Inference, node: ast.Call) -> Fact:
     nodes = arguments(check, node)
     facts = [check.fact(n) for n in nodes]
     reads = frozenset().union(*(f.reads for f in facts)) if facts else NOTHING_READ
-    candidates = check.resolution.candidates.get(node)
-    if candidates is None:
+    if (candidates := check.resolution.candidates.get(node)) is None:
         return Fact(reads=reads)
     given = given_to(node, [_may_be(f.type, n) for f, n in zip(facts, nodes, strict=True)])
     found = outcomes(candidates, given)
@@ -271,9 +273,7 @@ def arguments(check: Inference, node: ast.Call) -> list[ast.Expression]:
     return [node.receiver, *nodes]
 
 
-def _spell(
-    check: Inference, node: ast.Call, nodes: Sequence[ast.Expression], fits: Sequence[Binding]
-) -> None:
+def _spell(check: Inference, node: ast.Call, nodes: Nodes, fits: Sequence[Binding]) -> None:
     """Notes the parameters that argument names stand for."""
     for index, argument in enumerate(node.arguments, len(nodes) - len(node.arguments)):
         meant = parameter_of(index, fits) if argument.name is not None else None
@@ -285,14 +285,10 @@ def _may_be(kind: Type, node: ast.Expression) -> Type:
     """Returns the type of a number as whole if only its value can tell whether it is."""
     if isinstance(node, ast.Number) or not isinstance(kind, NumberType):
         return kind
-    if kind.dimension not in (None, PLAIN):
-        return kind
-    return NumberType(kind.dimension, whole=True)
+    return kind if kind.dimension not in (None, PLAIN) else NumberType(kind.dimension, whole=True)
 
 
-def _serve(
-    check: Inference, fits: Sequence[Binding], nodes: Sequence[ast.Expression], facts: Sequence[Fact]
-) -> None:
+def _serve(check: Inference, fits: Sequence[Binding], nodes: Nodes, facts: Facts) -> None:
     """Notes the dimension in which bare names are used, if all overloads agree on it."""
     for index, fact in enumerate(facts):
         if fact.bare is None:
@@ -303,13 +299,7 @@ def _serve(
             check.serves(fact, wanted.pop(), nodes[index])
 
 
-def _result(
-    check: Inference,
-    signature: Signature,
-    nodes: Sequence[ast.Expression],
-    facts: Sequence[Fact],
-    reads: frozenset[ReadPlace],
-) -> Fact:
+def _result(check: Inference, signature: Signature, nodes: Nodes, facts: Facts, reads: Reads) -> Fact:
     match signature.node:
         case None:
             return _built_in(check, signature.name, nodes, facts, reads)
@@ -323,7 +313,7 @@ def _result(
             return Fact(StructureType(), NOTHING_READ, definition)
 
 
-def _function(check: Inference, definition: ast.FunctionDefinition, reads: frozenset[ReadPlace]) -> Fact:
+def _function(check: Inference, definition: ast.FunctionDefinition, reads: Reads) -> Fact:
     """Returns the fact of a function's expression, which reads what the expression and its arguments read."""
     if definition in check.running:
         return UNKNOWN
@@ -335,13 +325,7 @@ def _function(check: Inference, definition: ast.FunctionDefinition, reads: froze
     return replace(fact, reads=fact.reads | reads if reads_arguments else fact.reads, bare=None)
 
 
-def _built_in(
-    check: Inference,
-    name: str,
-    nodes: Sequence[ast.Expression],
-    facts: Sequence[Fact],
-    reads: frozenset[ReadPlace],
-) -> Fact:
+def _built_in(check: Inference, name: str, nodes: Nodes, facts: Facts, reads: Reads) -> Fact:
     if name in CONSTANT:
         reads = NOTHING_READ
     if name in _BUILD_TIME:

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import functools
 import re
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING
 
 from aidl_lang.checking.binding import FIELDS, PARAMETERS
 from aidl_lang.checking.builtins import WORDS, word_set
+from aidl_lang.checking.imports import exchanged
 from aidl_lang.checking.rules import place_before
 from aidl_lang.checking.symbols import UNKNOWNS, Symbol, SymbolKind, SymbolScope, word_meant
 from aidl_lang.checking.types import Signature
@@ -24,8 +23,6 @@ if TYPE_CHECKING:
 
 
 # --- Names of other languages and programs, with their counterparts here.
-
-_Node = TypeVar("_Node", bound=ast.Node)
 
 
 def _words(*lines: str) -> frozenset[str]:
@@ -63,10 +60,7 @@ _CALLS = _by_word(
     ("pow power", "powers are written `x ^ 2`"),
     ("mod fmod", "the remainder is written `a % b`"),
     ("list array tuple", "lists are written `[1, 2, 3]`, or `[i * 10 for i in 0..3]`"),
-    (
-        "require ensure check",
-        "what must hold is written `constrain …`, or `assert …` to check it at the end",
-    ),
+    ("require ensure check", "what must hold is written `constrain …`, or `assert …` to check it at the end"),
     ("param parameter slider knob", "a parameter is declared by `param w = 80 in 20..200`"),
     ("var variable unknown", "an unknown is declared by `var gap = 5`"),
     ("linear_pattern pattern", "copies in a row are made by `linear_array(…)`"),
@@ -98,10 +92,7 @@ _VALUES = _by_word(
     ("e euler", "write the number: `2.718281828`"),
     ("is equals", "equality is written `a == b`"),
     ("between", "a range is written `x in 3..5`"),
-    (
-        "model sketch doc part cq b3d wp workplane canvas",
-        "constraints and geometry are written without it",
-    ),
+    ("model sketch doc part cq b3d wp workplane canvas", "constraints and geometry are written without it"),
 )
 
 
@@ -116,38 +107,21 @@ ATTRIBUTES_MEANT: Mapping[str, tuple[str, str]] = {
 
 
 def without_idle(module: ast.Module, modules: Sequence[ast.Module]) -> tuple[ast.Module, list[Diagnostic]]:
-    """Returns a file without statements such as `solve()` and `show(base)`, and a note on each; calls of
-    functions that one of the files defines stay.
-    """
-    notes: list[Diagnostic] = []
-
-    @functools.cache
-    def defined() -> set[str]:
+    """Returns a file without `solve()` and the like that none of the files defines, and a note on each."""
+    statements = (node for node in ast.walk(module) if isinstance(node, ast.ExpressionStatement))
+    idle = {node: word for node in statements if (word := _idle_word(node.value))}
+    if idle:
         nodes = (node for each in modules for node in ast.walk(each))
-        return {fold(node.name.text) for node in nodes if isinstance(node, ast.Callable | ast.Alias)}
-
-    def is_idle(node: ast.Node) -> bool:
-        if not (isinstance(node, ast.ExpressionStatement) and isinstance(call := node.value, ast.Call)):
-            return False
-        word = fold(call.callee.text)
-        return word in IDLE and isinstance(call.receiver, ast.Name | None) and word not in defined()
-
-    def kept(node: _Node) -> _Node:
-        changes: dict[str, Any] = {}
-        for field in _BODIES:
-            inner = getattr(node, field, None)
-            if isinstance(inner, ast.Block):
-                changes[field] = kept(inner)
-            elif field == "statements" and inner is not None:
-                notes.extend(_idle(s) for s in inner if is_idle(s))
-                changes[field] = tuple(kept(s) for s in inner if not is_idle(s))
-        same = all(getattr(node, field) == value for field, value in changes.items())
-        return node if same else replace(node, **changes)
-
-    return kept(module), notes
+        defined = {fold(node.name.text) for node in nodes if isinstance(node, ast.Callable | ast.Alias)}
+        idle = {node: word for node, word in idle.items() if word not in defined}
+    return exchanged(module, dict.fromkeys(idle)) if idle else module, list(map(_idle, idle))
 
 
-_BODIES = ("statements", "body", "then", "otherwise", "items")
+def _idle_word(call: ast.Expression) -> str:
+    """Returns the folded name of a call of `IDLE`; "" for anything else."""
+    if not isinstance(call, ast.Call) or not isinstance(call.receiver, ast.Name | None):
+        return ""
+    return word if (word := fold(call.callee.text)) in IDLE else ""
 
 
 def _idle(node: ast.ExpressionStatement) -> Diagnostic:
@@ -188,8 +162,7 @@ def unknown_name(resolver: Resolver, node: ast.Name, scope: SymbolScope) -> None
     if any(a.value is node for a in given) and word_meant(name, WORDS) is not None:
         resolver.resolution.uses[node] = Symbol(name, SymbolKind.WORD)
         return
-    called = scope.called(name)
-    if called is not None:
+    if (called := scope.called(name)) is not None:
         kind = kind_of(called[1][0])
         message = f"`{name}` is a {kind} and has to be called: `{name}(…)`"
         resolver.report("E0206", message, node, label="a name alone means a value")
@@ -389,9 +362,7 @@ def did_you_mean(like: Sequence[str], mark: str = "") -> str:
 
 
 def respell(node: ast.Node, like: Sequence[str]) -> Fix | None:
-    """Returns the fix that writes the nearest of the names that a name is like. It is sure if the name as
-    written is a slip for that one and no other.
-    """
+    """Returns the fix that writes the nearest name; it is sure if what is written is a slip for no other."""
     name = node.span.text
     if not like or not (is_like(name, like[0]) or like == ["self"]):
         return None

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import reduce
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 
 from aidl_lang.checking import builtins
 from aidl_lang.checking.symbols import Symbol, SymbolKind, SymbolScope
@@ -33,15 +33,15 @@ if TYPE_CHECKING:
 
 @record(slots=True)
 class ReadPlace:
-    """A structure whose unknowns are read: the one at the path `below`, seen from the structure `holder`
-    around the program text (or from the file).
-    """
+    """A structure whose unknowns are read: `below` is its path as the structure or file `holder` sees it."""
 
     holder: ast.Node
     below: tuple[str, ...] = ()
 
 
-NOTHING_READ: frozenset[ReadPlace] = frozenset()
+Reads: TypeAlias = frozenset[ReadPlace]
+
+NOTHING_READ: Reads = frozenset()
 
 
 @record(slots=True)
@@ -57,7 +57,7 @@ class Fact:
     """
 
     type: Type = ANY
-    reads: frozenset[ReadPlace] = NOTHING_READ
+    reads: Reads = NOTHING_READ
     of: ast.Node | None = None
     place: ReadPlace | None = None
     bare: Symbol | None = None
@@ -143,8 +143,7 @@ def _loop_variable(check: Inference, symbol: Symbol) -> Fact:
     assert isinstance(loop, ast.For | ast.ForArguments | ast.Comprehension)
     if len(loop.variables) > 1:
         return UNKNOWN
-    run = check.facts.get(loop.iterable)
-    if run is None:
+    if (run := check.facts.get(loop.iterable)) is None:
         return UNKNOWN
     if isinstance(run.type, RangeType):
         return Fact(NumberType(None, whole=True)) if _is_plain_range(loop.iterable) else UNKNOWN
@@ -260,9 +259,7 @@ def part(check: Inference, definition: ast.Node, key: str) -> Fact:
 
 
 def result(check: Inference, definition: ast.FunctionDefinition) -> tuple[Fact, bool]:
-    """Returns the fact of a function's expression, and whether its result depends on the solved values of its
-    arguments, not only on those as written.
-    """
+    """Returns the fact of a function's expression, and whether it depends on solved values of arguments."""
     if check.is_standard(definition):
         return check.of_standard(result, definition)
     before, check.homes = check.homes, body_of(check, definition).homes

@@ -36,20 +36,19 @@ N = TypeVar("N", bound=ast.Node)
 
 _FOLDED = frozenset(map(fold, CUTS))
 _HOLDING = ("solid", "assembly")
-_CENTER = 1
-"""The index of the centre among the arguments of every cut."""
+_CENTER = 1  # the index of the centre among the arguments of every cut
 
 
 def with_placed_cuts(module: ast.Module) -> ast.Module:
     """Returns a file in which the centre given to a hole stands behind `at`, or is that of a copy."""
     cuts = _cuts_in(module)
-    new: dict[ast.Node, ast.Node] = {}
+    new: dict[ast.Node, ast.Node | None] = {}
     for node in _assignments(module, cuts):
         if _is_cut(node.value, cuts):
             new[node] = _placed(node)
         else:
             new |= {each: _moved(each) for each in _members(node.value) if _is_cut(each, cuts)}
-    return _exchanged(module, new) if new else module
+    return exchanged(module, new) if new else module
 
 
 def hole_calls(module: ast.Module) -> frozenset[ast.Call]:
@@ -143,25 +142,27 @@ def _moved(cut: ast.Call) -> ast.Call:
     return ast.Call(callee, None, (ast.Argument(None, call, span=call.span), by), span=cut.span)
 
 
-def _exchanged(node: N, new: Mapping[ast.Node, ast.Node]) -> N:
-    """Returns a tree in which some of the nodes below the first are others; itself if there are none."""
+def exchanged(node: N, new: Mapping[ast.Node, ast.Node | None]) -> N:
+    """Returns a tree in which some of the nodes below the first are others, or gone; itself if none are."""
+
+    def other(inner: ast.Node) -> ast.Node | None:
+        return new[inner] if inner in new else exchanged(inner, new)
+
     changed: dict[str, object] = {}
     names: tuple[str, ...] = node.__match_args__
     for name in names:
         value = getattr(node, name)
         if isinstance(value, ast.Node):
-            other: object = new.get(value) or _exchanged(value, new)
+            held: object = other(value)
         elif type(value) is tuple:
-            other = tuple(
-                (new.get(each) or _exchanged(each, new)) if isinstance(each, ast.Node) else each
-                for each in value
-            )
-            other = value if all(map(is_, value, other)) else other
+            found = [other(each) if isinstance(each, ast.Node) else each for each in value]
+            held = tuple(each for each in found if each is not None)
+            held = value if len(held) == len(value) and all(map(is_, value, held)) else held
         else:
             continue
-        if other is not value:
-            changed[name] = other
-    return replace(node, **changed) if changed else node  # type: ignore[arg-type]  # own fields
+        if held is not value:
+            changed[name] = held
+    return replace(node, **changed) if changed else node  # type: ignore[arg-type]
 
 
 def _used_as_outlines(body: ast.Block) -> frozenset[str]:
@@ -175,8 +176,7 @@ def _without_center(call: ast.Call) -> tuple[ast.Call, ast.Expression | None]:
     named = (a for a, word in words if "center" in (word, *PARAMETERS.get(word, ())))
     unnamed = [a for a in call.arguments if a.name is None]
     by_place = unnamed[_CENTER] if len(unnamed) > _CENTER and call.receiver is None else None
-    found = next(named, by_place)
-    if found is None:
+    if (found := next(named, by_place)) is None:
         return call, None
     return replace(call, arguments=tuple(a for a in call.arguments if a is not found)), found.value
 

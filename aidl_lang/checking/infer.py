@@ -89,9 +89,7 @@ class Inference:
         return node.span.source in self._standard
 
     def of_standard(self, ask: Callable[..., T], definition: ast.Node, *more: str) -> T:
-        """Returns the answer of a question of `facts` on a definition of the library. It sees nothing of a
-        program, so each is found once.
-        """
+        """Returns the answer of `facts` on a definition of the library, which sees nothing of a program."""
         answer: T = _of_standard(self.resolution.library, ask, definition, *more)
         return answer
 
@@ -130,8 +128,7 @@ class Inference:
 
     def fact(self, node: ast.Node) -> Fact:
         """Returns the fact of an expression; of one at the end of a very long chain of names, UNKNOWN."""
-        known = self.facts.get(node)
-        if known is not None:
+        if (known := self.facts.get(node)) is not None:
             return known
         if self._depth >= _DEEPEST:
             return UNKNOWN

@@ -241,8 +241,7 @@ class Lazy(Mapping[str, Any]):
         self._make = make
 
     def __getitem__(self, key: str) -> Any:
-        value = self._values[key]
-        if value is None:
+        if (value := self._values[key]) is None:
             value = self._values[key] = self._make(key)
         return value
 

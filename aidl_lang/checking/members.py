@@ -196,8 +196,7 @@ def _of_file(check: Inference, node: ast.Member, space: Symbol) -> Fact:
     assert space.scope is not None
     if (scope := space.scope.spaces.get(space.name)) is None:
         return UNKNOWN
-    key = find(node.name.text, scope.values)
-    if key is None:
+    if (key := find(node.name.text, scope.values)) is None:
         return _no_member(check, node, "the file", list(scope.values))
     _means(check, node, scope.values[key])
     return of_symbol(check, scope.values[key])
@@ -243,8 +242,7 @@ def _of_structure(check: Inference, base: Fact, node: ast.Member) -> Fact:
     if base.of is None:
         return Fact(ANY, base.reads)
     scope = check.resolution.scope_of(base.of)
-    key = find(node.name.text, scope.values)
-    if key is None:
+    if (key := find(node.name.text, scope.values)) is None:
         if len(within := _holding(check, scope, node.name.text)) == 1:
             path, at = f"{within[0]}.{node.name.text}", node.name.span
             message = f"`{shown(node.value)}` has no `{node.name.text}`: that is in its `{within[0]}`"
@@ -293,8 +291,7 @@ def _seen(check: Inference, place: ReadPlace, of: ast.Node, base: ReadPlace, sym
 def _of_shape(check: Inference, base: Fact, node: ast.Member) -> Fact:
     assert base.of is not None
     scope = body_of(check, base.of)
-    key = find(node.name.text, scope.values)
-    if key is None:
+    if (key := find(node.name.text, scope.values)) is None:
         if find(node.name.text, dict.fromkeys(builtins.OUTLINE)):
             return Fact(ANY, base.reads)
         return _field(check, base, node, {}, list(scope.values))
@@ -310,8 +307,7 @@ def _field(
     if builtins.is_box_name(name):
         return Fact(BoxType(), base.reads)
     for table in (own, builtins.BOX, builtins.FINISH):
-        key = find(name, table)
-        if key is not None:
+        if (key := find(name, table)) is not None:
             _means(check, node, Symbol(key, SymbolKind.FIELD))
             return Fact(table[key], base.reads)
     names = [*known, *own, *builtins.BOX]

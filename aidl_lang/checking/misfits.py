@@ -13,6 +13,7 @@ from aidl_lang.checking.rules import place_before, shown
 from aidl_lang.checking.types import (
     Binding,
     GeometryType,
+    Given,
     GivenArgument,
     ListType,
     Mismatch,
@@ -35,11 +36,7 @@ Misses: TypeAlias = Sequence[Mismatch]
 
 
 def no_overload(
-    check: Inference,
-    node: ast.Call,
-    nodes: Sequence[ast.Expression],
-    given: Sequence[GivenArgument],
-    misses: Misses,
+    check: Inference, node: ast.Call, nodes: Sequence[ast.Expression], given: Given, misses: Misses
 ) -> None:
     if node.receiver is not None and not node.arguments and fold(node.callee.text) in FIELDS:
         message, fix = called_field(node)
@@ -59,7 +56,7 @@ def no_overload(
     check.report("E0311", f"`{name}` {closest.reason}", at, label=label, hints=hints, fix=centre)
 
 
-def _centre(at: ast.Node, given: Sequence[GivenArgument], misses: Misses, closest: Mismatch) -> Fix | None:
+def _centre(at: ast.Node, given: Given, misses: Misses, closest: Mismatch) -> Fix | None:
     """Returns the fix that names the centre of a shape where a point is wanted, if the call fits with it."""
     if closest.kinds is None or closest.argument is None:
         return None
@@ -116,7 +113,7 @@ def example_of(signature: Signature) -> str | None:
     return None
 
 
-def _closeness(miss: Mismatch, given: Sequence[GivenArgument]) -> tuple[int, int, int, int, int]:
+def _closeness(miss: Mismatch, given: Given) -> tuple[int, int, int, int, int]:
     """Returns how near a candidate comes: named arguments it knows, best by name, then what is missing."""
     names = [g.name for g in given if g.name is not None]
     known = sum(1 for name in names if _knows(miss.signature, name))
@@ -133,7 +130,7 @@ def _knows(signature: Signature, word: str) -> bool:
     return any(fold(m) in known for m in meanings) or all(p in known for p in pair)
 
 
-def _ambiguous(check: Inference, node: ast.Call, given: Sequence[GivenArgument], misses: Misses) -> bool:
+def _ambiguous(check: Inference, node: ast.Call, given: Given, misses: Misses) -> bool:
     """Reports a word or a place that may mean several parameters. Returns whether there is one."""
     miss = next((m for m in misses if m.meanings), None)
     if miss is None or miss.argument is None:
@@ -147,7 +144,7 @@ def _ambiguous(check: Inference, node: ast.Call, given: Sequence[GivenArgument],
     return True
 
 
-def _filled_twice(check: Inference, node: ast.Call, given: Sequence[GivenArgument], misses: Misses) -> bool:
+def _filled_twice(check: Inference, node: ast.Call, given: Given, misses: Misses) -> bool:
     """Reports arguments without a name that stand for parameters which are named as well: `rectangle(20, 10,
     bottom_center: p)`. Returns whether they would fit by name.
     """
@@ -171,9 +168,7 @@ def _filled_twice(check: Inference, node: ast.Call, given: Sequence[GivenArgumen
     return True
 
 
-def _loose_coordinates(
-    check: Inference, node: ast.Call, given: Sequence[GivenArgument], misses: Misses
-) -> bool:
+def _loose_coordinates(check: Inference, node: ast.Call, given: Given, misses: Misses) -> bool:
     """Reports numbers in place of points: `line(0, 0, 10, 5)`, `circle(0, 0, 5)`. Returns whether it did."""
     if not given or len(given) != len(node.arguments) or any(g.name is not None for g in given):
         return False
@@ -207,7 +202,7 @@ def _loose_coordinates(
     return False
 
 
-def _pair_for_one(check: Inference, node: ast.Call, given: Sequence[GivenArgument], misses: Misses) -> bool:
+def _pair_for_one(check: Inference, node: ast.Call, given: Given, misses: Misses) -> bool:
     """Reports two sizes in brackets: `square([40, 20])`, `rectangle([40, 20])`. Returns whether it did."""
     pairs = [a for a, g in zip(node.arguments, given, strict=False) if _is_pair(g) and _may_be_size(a)]
     if len(given) != len(node.arguments) or len(pairs) != 1:
@@ -238,7 +233,7 @@ def _may_be_size(argument: ast.Argument) -> bool:
     return argument.name is None or fold(argument.name.text) in ("size", "s", "dimensions", "dims")
 
 
-def _half_or_double(check: Inference, node: ast.Call, given: Sequence[GivenArgument], misses: Misses) -> bool:
+def _half_or_double(check: Inference, node: ast.Call, given: Given, misses: Misses) -> bool:
     for argument in node.arguments:
         if argument.name is None or any(_knows(m.signature, argument.name.text) for m in misses):
             continue
@@ -259,7 +254,7 @@ def _half_or_double(check: Inference, node: ast.Call, given: Sequence[GivenArgum
     return False
 
 
-def _not_together(check: Inference, node: ast.Call, given: Sequence[GivenArgument], misses: Misses) -> bool:
+def _not_together(check: Inference, node: ast.Call, given: Given, misses: Misses) -> bool:
     """Reports named arguments that some overloads know, but none all of them. Returns whether it did."""
     written = [a.name for a in node.arguments if a.name is not None]
     if len(written) < 2 or any(all(_knows(m.signature, n.text) for n in written) for m in misses):
@@ -271,9 +266,7 @@ def _not_together(check: Inference, node: ast.Call, given: Sequence[GivenArgumen
     return True
 
 
-def _unknown_parameter(
-    check: Inference, node: ast.Call, given: Sequence[GivenArgument], misses: Misses
-) -> bool:
+def _unknown_parameter(check: Inference, node: ast.Call, given: Given, misses: Misses) -> bool:
     names = list(dict.fromkeys(name for m in misses for name, _, _ in m.signature.parameters))
     taken = {fold(a.name.text) for a in node.arguments if a.name is not None}
     free = [name for name in names if fold(name) not in taken]

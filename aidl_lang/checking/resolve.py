@@ -105,8 +105,7 @@ class Resolver:
         for statement in module.statements:
             if not isinstance(statement, ast.Import):
                 continue
-            target = loaded.targets.get(statement)
-            if target is None:
+            if (target := loaded.targets.get(statement)) is None:
                 _note_missing(statement, scope)
                 continue
             source = self.resolution.scopes[target]
@@ -333,8 +332,7 @@ class Resolver:
             self.expression(item.value if isinstance(item, ast.Let) else item, inner)
 
     def _name(self, node: ast.Name, scope: SymbolScope) -> None:
-        symbol = scope.value(node.text)
-        if symbol is None:
+        if (symbol := scope.value(node.text)) is None:
             complaints.unknown_name(self, node, scope)
             return
         self.resolution.uses[node] = symbol
@@ -378,8 +376,7 @@ class Resolver:
     def _callable(self, signature: Signature) -> Symbol:
         if signature.node is None:
             return Symbol(signature.name, SymbolKind.BUILTIN)
-        known = self.resolution.of_definition.get(signature.node)
-        if known is None:
+        if (known := self.resolution.of_definition.get(signature.node)) is None:
             name = signature.node.name
             known = Symbol(
                 signature.name, complaints.kind_of(signature), signature.node, None, [name], [signature.node]
@@ -475,8 +472,7 @@ def made_by(value: ast.Expression, scope: SymbolScope) -> SymbolKind:
         case ast.Point():
             return SymbolKind.GEOMETRY
         case ast.Call(callee=callee, receiver=receiver):
-            found = scope.space_of(receiver).called(callee.text)
-            if found is None:
+            if (found := scope.space_of(receiver).called(callee.text)) is None:
                 return SymbolKind.LET
             name, signatures = found
             kinds = {s.kind for s in signatures}

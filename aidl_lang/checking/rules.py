@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from aidl_lang.checking import units
 from aidl_lang.checking.builtins import BOX
 from aidl_lang.checking.types import (
@@ -14,7 +16,7 @@ from aidl_lang.checking.types import (
     Type,
 )
 from aidl_lang.checking.units import ANGLE, AREA, LENGTH, MaybeDimension
-from aidl_lang.common.prose import with_article
+from aidl_lang.common.prose import shortened, with_article
 from aidl_lang.common.records import record
 from aidl_lang.common.source import Span
 from aidl_lang.syntax import ast
@@ -34,8 +36,7 @@ def a(kind: Type) -> str:
 
 def shown(node: ast.Node) -> str:
     """Returns the text of an expression on one line, shortened if it is long."""
-    text = node.span.one_line
-    return text if len(text) <= _LONGEST else text[: _LONGEST - 1] + "…"
+    return shortened(node.span.one_line, _LONGEST)
 
 
 def place_before(node: ast.Node) -> Span:
@@ -74,7 +75,6 @@ def comparison_hint(x: Type, y: Type, left: str, right: str) -> str:
 
 # The checker applies them to types that follow from the text, the builder to those that only values show.
 
-CONSTANTS = "use a `param`, a `let` of constants or a loop variable; `written(…)` is the value as written"
 FOUND = "depends on unknowns"
 """The label of an expression whose value the solver finds, but which is needed before."""
 
@@ -89,9 +89,52 @@ class TypeMisfit:
     label: str = ""
 
 
-def needed(what: str, kind: Type) -> TypeMisfit:
-    """Refuses an expression of another type than its place needs."""
-    return TypeMisfit("E0302", f"{what} is needed here, and this is {a(kind)}")
+def _refusal(code: str, message: str, *hints: str, label: str = "") -> Callable[..., TypeMisfit]:
+    """Returns a function that refuses an expression in these words; a type in them gets its article."""
+
+    def refused(*words: str | Type) -> TypeMisfit:
+        said = (word if isinstance(word, str) else a(word) for word in words)
+        return TypeMisfit(code, message.format(*said), hints, label)
+
+    return refused
+
+
+needed = _refusal("E0302", "{} is needed here, and this is {}")
+no_coordinate = _refusal("E0301", "a coordinate must be a length, and `{}` is {}")
+no_run = _refusal(
+    "E0304",
+    "`for` runs through a range or a list, and this is {}",
+    "as in `for i in 0..9 { … }` or `for s in [-1, 1] { … }`",
+)
+no_members = _refusal("E0305", "`{}` is {} and has no members by number")
+list_on_a_line = _refusal(
+    "E0305",
+    "this `[` goes on with the line above: `{}` is {} and has no members by number",
+    "a list of things stands in a call: `centered_in([a, b], c)`, `align_left(a, b, c)`",
+)
+no_whole_number = _refusal("E0302", "{} must be a whole number, not {}")
+fraction = _refusal("E0306", "{} must be a whole number, and this is `{}`")
+no_order = _refusal(
+    "E0309", "points have no order, so `{}` does not compare them", "compare coordinates, as in `a.x <= b.x`"
+)
+no_domain = _refusal("E0314", "the range of a `param` is as `20..200` or a list of choices, not {}")
+unknown_yet = _refusal(
+    "E0501",
+    "{} must be known before solving, and `{}` is found by the solver",
+    "use a `param`, a `let` of constants or a loop variable; `written(…)` is the value as written",
+    label=FOUND,
+)
+undecided = _refusal(
+    "E0502",
+    "`{}` is decided by the solver, so it cannot choose what is built",
+    "compare `param`s and constants, or use `written(…)` for the value as written",
+    label=FOUND,
+)
+
+
+def no_equation(word: str, hint: str) -> TypeMisfit:
+    """Refuses `or`, `not` and `!=` as constraints."""
+    return TypeMisfit("E0322", f"`{word}` does not constrain: there are many ways to satisfy it", (hint,))
 
 
 def unwanted(what: str, wanted: Type, kind: Type, text: str) -> TypeMisfit:
@@ -102,41 +145,6 @@ def unwanted(what: str, wanted: Type, kind: Type, text: str) -> TypeMisfit:
     elif isinstance(kind, GeometryType):
         hints = (f"name a part of it: `{text}.center`",)
     return TypeMisfit("E0302", f"{what} wants {a(wanted)}, and this is {a(kind)}", hints)
-
-
-def no_coordinate(text: str, kind: Type) -> TypeMisfit:
-    """Refuses a coordinate that is no length."""
-    return TypeMisfit("E0301", f"a coordinate must be a length, and `{text}` is {a(kind)}")
-
-
-def no_run(kind: Type) -> TypeMisfit:
-    """Refuses a `for` over something without members."""
-    hint = "as in `for i in 0..9 { … }` or `for s in [-1, 1] { … }`"
-    return TypeMisfit("E0304", f"`for` runs through a range or a list, and this is {a(kind)}", (hint,))
-
-
-def no_members(text: str, kind: Type) -> TypeMisfit:
-    """Refuses an index behind something without numbered members."""
-    return TypeMisfit("E0305", f"`{text}` is {a(kind)} and has no members by number")
-
-
-def list_on_a_line(text: str, kind: Type) -> TypeMisfit:
-    """Refuses an index that begins a line below something without numbered members."""
-    return TypeMisfit(
-        "E0305",
-        f"this `[` goes on with the line above: `{text}` is {a(kind)} and has no members by number",
-        hints=("a list of things stands in a call: `centered_in([a, b], c)`, `align_left(a, b, c)`",),
-    )
-
-
-def no_whole_number(what: str, kind: Type) -> TypeMisfit:
-    """Refuses another value in place of a whole number."""
-    return TypeMisfit("E0302", f"{what} must be a whole number, not {a(kind)}")
-
-
-def fraction(what: str, text: str) -> TypeMisfit:
-    """Refuses a number that is not whole."""
-    return TypeMisfit("E0306", f"{what} must be a whole number, and this is `{text}`")
 
 
 def no_vectors(operator: str, left: Type, right: Type, left_text: str, right_text: str) -> TypeMisfit:
@@ -169,12 +177,6 @@ def no_comparison(relation: str, left: Type, right: Type, left_text: str, right_
     return TypeMisfit("E0309", f"`{relation}` does not compare {a(left)} with {a(right)}", (hint,))
 
 
-def no_order(relation: str) -> TypeMisfit:
-    """Refuses a comparison of points by size."""
-    message = f"points have no order, so `{relation}` does not compare them"
-    return TypeMisfit("E0309", message, ("compare coordinates, as in `a.x <= b.x`",))
-
-
 def no_condition(text: str, kind: Type) -> TypeMisfit:
     """Refuses an expression in place of a constraint."""
     hint = f"compare it with something: `{text} == …`"
@@ -183,27 +185,3 @@ def no_condition(text: str, kind: Type) -> TypeMisfit:
     elif isinstance(kind, GeometryType | StructureType | PointType):
         hint = f"say what about it, as in `fixed({text})`, `horizontal({text})` or `{text}.center == …`"
     return TypeMisfit("E0321", f"`{text}` is {a(kind)} and constrains nothing", (hint,))
-
-
-def no_equation(word: str, hint: str) -> TypeMisfit:
-    """Refuses `or`, `not` and `!=` as constraints."""
-    return TypeMisfit("E0322", f"`{word}` does not constrain: there are many ways to satisfy it", (hint,))
-
-
-def no_domain(kind: Type) -> TypeMisfit:
-    """Refuses a value behind `in` of a param that is no range of values."""
-    message = f"the range of a `param` is as `20..200` or a list of choices, not {a(kind)}"
-    return TypeMisfit("E0314", message)
-
-
-def unknown_yet(what: str, text: str) -> TypeMisfit:
-    """Refuses a value that the solver finds, but which is needed while building."""
-    message = f"{what} must be known before solving, and `{text}` is found by the solver"
-    return TypeMisfit("E0501", message, (CONSTANTS,), FOUND)
-
-
-def undecided(text: str) -> TypeMisfit:
-    """Refuses a condition that the solver decides, but which chooses what is built."""
-    hint = "compare `param`s and constants, or use `written(…)` for the value as written"
-    message = f"`{text}` is decided by the solver, so it cannot choose what is built"
-    return TypeMisfit("E0502", message, (hint,), FOUND)

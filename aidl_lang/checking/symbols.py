@@ -270,8 +270,7 @@ IDLE = "N0201"
 
 _LATER = frozenset({"N0731", "N0741", "W0720", "W0725", "W0726", "W0733", "W0736"})
 """Codes that are told only when a file is written or parts are measured."""
-_OF_TEXT = ("N02", "W01", "W02")
-"""Codes of what a text says, whatever the values of its params."""
+_OF_TEXT = ("N02", "W01", "W02")  # codes of what a text says, whatever the values of its params
 
 
 @record()

@@ -369,6 +369,9 @@ class GivenArgument:
     type: Type
 
 
+Given: TypeAlias = Sequence[GivenArgument]
+
+
 def given_to(call: ast.Call, kinds: Sequence[Type]) -> list[GivenArgument]:
     """Returns the arguments of a call, of these types; what comes before them, as a receiver, has no name."""
     names = [a.name.text if a.name else None for a in call.arguments]
@@ -383,8 +386,7 @@ class Signature:
     """
 
     name: str
-    parameters: tuple[tuple[str, Type, bool], ...]
-    """name, type, and whether it has a default"""
+    parameters: tuple[tuple[str, Type, bool], ...]  # name, type, and whether it has a default
     node: ast.Callable | None = None
     kind: type[ast.Callable] | None = None
     takes_any: bool = False
@@ -499,11 +501,10 @@ class Mismatch:
         return f"{self.problem} to be {with_article(wanted)}, not {other}"
 
 
-_GATHERED = 20
-"""The cost of collecting arguments into a list: an overload that names them comes before."""
+_GATHERED = 20  # the cost of collecting arguments into a list: an overload that names them comes before
 
 
-def bind(signature: Signature, given: Sequence[GivenArgument]) -> Binding | Mismatch:
+def bind(signature: Signature, given: Given) -> Binding | Mismatch:
     """Matches arguments to the parameters of one callable.
 
     If the first parameter is a list and the arguments do not fit as they stand, all positional ones are its
@@ -516,7 +517,7 @@ def bind(signature: Signature, given: Sequence[GivenArgument]) -> Binding | Mism
     return gathered if isinstance(gathered, Binding) or plain.argument != gathered.argument else plain
 
 
-def _bind(signature: Signature, given: Sequence[GivenArgument], *, gather: bool) -> Binding | Mismatch:
+def _bind(signature: Signature, given: Given, *, gather: bool) -> Binding | Mismatch:
     positional = [i for i, g in enumerate(given) if g.name is None]
     parameters = signature.parameters
     arguments: dict[str, tuple[int, ...]] = {}
@@ -540,17 +541,12 @@ def _bind(signature: Signature, given: Sequence[GivenArgument], *, gather: bool)
         if target in arguments:
             return Mismatch(signature, f"gets `{target}` twice", index)
         arguments[target] = (index,)
-    return _fitted(signature, given, arguments, gathered, tuple(positional))
+    return _fitted(Binding(signature, arguments, gathered, (0, 0, 0), tuple(positional)), given)
 
 
-def _fitted(
-    signature: Signature,
-    given: Sequence[GivenArgument],
-    arguments: Mapping[str, tuple[int, ...]],
-    gathered: str | None,
-    positional: tuple[int, ...],
-) -> Binding | Mismatch:
+def _fitted(found: Binding, given: Given) -> Binding | Mismatch:
     """Returns the binding with its distance from the types, or the parameter that gets nothing that fits."""
+    signature, arguments, gathered = found.signature, found.arguments, found.gathered
     distance, turned, defaulted = (_GATHERED if gathered is not None else 0), 0, 0
     for name, kind, optional in signature.parameters:
         if name not in arguments:
@@ -559,12 +555,11 @@ def _fitted(
             defaulted += not isinstance(kind, TruthType)  # a flag left out assumes nothing
         elif name != gathered:
             index = arguments[name][0]
-            step = accepts(kind, given[index].type)
-            if step is None:
+            if (step := accepts(kind, given[index].type)) is None:
                 return Mismatch(signature, f"needs `{name}`", index, kinds=(kind, given[index].type))
             distance += step
             turned += optional and kind in _TURNS and given[index].type in _BARE
-    return Binding(signature, arguments, gathered, (distance, turned, defaulted), positional)
+    return Binding(signature, arguments, gathered, (distance, turned, defaulted), found.positional)
 
 
 _TURNS = (NumberType(ANGLE), NumberType(ANGLE, whole=True))

@@ -98,14 +98,12 @@ class Relocation:
         """Returns a statement for the ancestor, in the loops and branches that the site is in below it."""
         for node, is_else in reversed(self.site.trail[self.start + 1 :]):
             if isinstance(node, ast.For):
-                run = self.expression(node.iterable)
-                if run is None:
+                if (run := self.expression(node.iterable)) is None:
                     return None
                 variables = ", ".join(v.text for v in node.variables)
                 text = f"for {variables} in {run} {{ {text} }}"
             elif isinstance(node, ast.If):
-                test = self.expression(node.test)
-                if test is None:
+                if (test := self.expression(node.test)) is None:
                     return None
                 text = f"if {f'not ({test})' if is_else else test} {{ {text} }}"
         return text
@@ -119,11 +117,9 @@ class Relocation:
                 return None
             if not isinstance(part, ast.Name):
                 continue
-            symbol = resolution.uses.get(part)
-            if symbol is None:
+            if (symbol := resolution.uses.get(part)) is None:
                 return None
-            text = self._name(part, symbol, node)
-            if text is None:
+            if (text := self._name(part, symbol, node)) is None:
                 return None
             if text != part.text:
                 edits.append((part.span.start, part.span.end, text))
@@ -180,9 +176,7 @@ class Relocation:
 
 
 def insertion_after(statement: ast.Node, text: str) -> tuple[Span, str]:
-    """Returns where to write a statement behind another, and how: on a line of its own, indented alike,
-    unless more than a comment follows on the line.
-    """
+    """Returns where to write a statement behind another, and how: on a line of its own if nothing follows."""
     source = statement.span.source
     line_number, _ = source.position(statement.span.start)
     line = source.line(line_number)
@@ -306,9 +300,7 @@ class Violation:
         fact = self.infer.facts.get(culprit)
         far = [p for p in self.far if fact is None or p in fact.reads] or list(self.far)
         place = far[0]
-        if not place.below:
-            return _name(place.holder)
-        return f"`{'.'.join(place.below)}`"
+        return _name(place.holder) if not place.below else f"`{'.'.join(place.below)}`"
 
     def _hint(self, relation: str | None, ancestor: ast.Node | None, written: Written) -> str:
         where = _name(ancestor) if ancestor is not None else "the structure that holds both"
@@ -339,8 +331,7 @@ class Violation:
             if node.callee.text == "guess":
                 return None
             node = node.arguments[0].value
-        right = move.expression(node)
-        if right is None:
+        if (right := move.expression(node)) is None:
             return None
         if isinstance(node, ast.Conditional):
             right = f"({right})"
@@ -348,8 +339,7 @@ class Violation:
         return move.statement(f"constrain {left} == {right}")
 
     def _moved(self, move: Relocation) -> str | None:
-        text = self._said_there(move)
-        if text is None:
+        if (text := self._said_there(move)) is None:
             return None
         allowing = {a.span.text for n in (self.whole, self.target.node) for a in getattr(n, "allowing", ())}
         return move.statement(" ".join([*sorted(allowing), text]))
@@ -405,8 +395,7 @@ class Violation:
     def _guess(self, written: Written) -> str:
         """Returns the replacement: the value, or in a loop the expression with values for its references."""
         target = self.target.node
-        places = self._references()
-        if not places:
+        if not (places := self._references()):
             return self._marked(_literal(written.get(target), self.target.is_point, self._fallback))
         text, start = target.span.text, target.span.start
         for node in reversed(places):

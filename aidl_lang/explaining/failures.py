@@ -6,39 +6,39 @@ import itertools
 import math
 import re
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
 
-from aidl_lang.building.expression import Expression, Unknown, unknowns
-from aidl_lang.building.lower import Lowered
-from aidl_lang.building.model import Constraint, chain
+from aidl_lang.building.expression import Evaluator, Unknown, unknowns
+from aidl_lang.building.lower import Lowered, lower
+from aidl_lang.building.model import Constraint, Model, chain
 from aidl_lang.building.values import Num
 from aidl_lang.building.wording import Wording, rounding
-from aidl_lang.checking.units import ANGLE, LENGTH
+from aidl_lang.checking.units import ANGLE, LENGTH, UNITS
 from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix, Label
-from aidl_lang.common.prose import listed, short
+from aidl_lang.common.prose import listed, named, short, shortened, ticked
 from aidl_lang.common.records import record
 from aidl_lang.common.source import Span
 from aidl_lang.explaining.remedies import Remedy, RemedySearch, dear, left_out, remedies, wished
 from aidl_lang.explaining.trials import Dial, Trials, exact_numbers, written_numbers
+from aidl_lang.interp import Interpretation
+from aidl_lang.solver import Settings, Status, solve
+from aidl_lang.solver.conflicts import nearby_solution
+from aidl_lang.solver.newton import Clock
 from aidl_lang.solver.problem import Failure, GroupFailure, Member, Solution
 from aidl_lang.syntax import ast
 
 _PROVEN = (Failure.CONTRADICTORY, Failure.OVERDETERMINED)
 """Reasons that do not depend on where the search began."""
-_ROUNDED = 1e-6
-"""Violations up to this, in the constraint's own units, are told as rounding."""
-_FINISHED = 5
-"""The most fixes that are tried for whether the program then compiles to the end."""
+_ROUNDED = 1e-6  # violations up to this, in the constraint's own units, are told as rounding
+_FINISHED = 5  # the most fixes that are tried for whether the program then compiles to the end
 _LIKE = 2.0
 """Factor up to which a dearer fix is offered in place of one that changes what says nothing new then."""
 NAMED = 3
 """The most things that a list names."""
-_SHOWN = 12
-"""The most places shown beside the one that a message is about."""
-_QUOTED = 60
-"""The most characters of a constraint that a headline quotes."""
+_SHOWN = 12  # the most places shown beside the one that a message is about
+_QUOTED = 60  # the most characters of a constraint that a headline quotes
 
 
 def explained(lowered: Lowered, solution: Solution, trials: Trials) -> list[Explanation]:
@@ -101,25 +101,6 @@ class _StatedMember:
 
     member: Member
     stated: Constraint
-
-    @property
-    def name(self) -> str:
-        text = self.stated.text
-        return f"`{text if len(text) <= _QUOTED else text[: _QUOTED - 1] + '…'}`"
-
-    @property
-    def node(self) -> ast.Expression | None:
-        """The statement, if it is all that is written at its place; else None."""
-        wording = self.stated.wording
-        if isinstance(wording, Wording) and wording.node.span == self.stated.span:
-            return wording.node
-        return None
-
-    def value(self, part: ast.Expression) -> Expression | None:
-        """Returns the number expression of a part of the statement; None if it is not a number."""
-        wording = self.stated.wording
-        value = wording.value(part) if isinstance(wording, Wording) else None
-        return value.expression if isinstance(value, Num) else None
 
 
 class Explanation:
@@ -219,15 +200,20 @@ class Explanation:
             for dial in stated[span]:
                 yield RemedySearch(dial, self.failure, self.trials, span, member)
         if not self.sizes:
-            wordings = [party.stated.wording for party in self.parties]
-            uses = next((w.it.program.resolution.uses for w in wordings if isinstance(w, Wording)), {})
-            for dial in exact_numbers([p.node for p in self.parties if p.node is not None], uses):
+            uses = next((w.it.program.resolution.uses for w in self._wordings), {})
+            for dial in exact_numbers(
+                [p.stated.node for p in self.parties if p.stated.node is not None], uses
+            ):
                 yield RemedySearch(dial, self.failure, self.trials, dial.place)
+
+    @property
+    def _wordings(self) -> Iterator[Wording]:
+        return (w for party in self.parties if (w := party.stated.wording) is not None)
 
     @staticmethod
     def _dials(party: _StatedMember) -> list[Dial]:
         """Returns the numbers of a statement that may be changed: factors are no measures."""
-        dials = [] if party.node is None else written_numbers(party.node)
+        dials = [] if party.stated.node is None else written_numbers(party.stated.node)
         return [dial for dial in dials if not dial.is_factor]
 
     def _remedy_of(self, party: _StatedMember) -> Remedy | None:
@@ -263,7 +249,7 @@ class Explanation:
 
     def _last_resorts(self) -> Iterator[Fix]:
         """Yields fixes that change no number: a shape with several points placed turns, a party is a wish."""
-        equal = [p.stated.comparisons for p in self.parties if isinstance(p.node, ast.Comparison)]
+        equal = [p.stated.comparisons for p in self.parties if isinstance(p.stated.node, ast.Comparison)]
         points = [parts for parts in equal if len(parts) == 2]
         spoken = unknowns(side for parts in points[1:] for part in parts for side in (part.left, part.right))
         shapes = {unknown.holder.span: unknown.holder.path for unknown in spoken}
@@ -272,7 +258,7 @@ class Explanation:
                 where = replace(span, start=span.end - 1, end=span.end - 1)
                 yield Fix(f"let `{path}` turn", (Edit(where, ", rotatable: true"),))
         for party in reversed(self.parties):
-            if party.node is not None and self.times[party.stated.span] == 1:
+            if party.stated.node is not None and self.times[party.stated.span] == 1:
                 yield wished(party.stated)
 
     def _may_finish(self, found: Remedy) -> bool:
@@ -286,7 +272,7 @@ class Explanation:
         """Returns the fix; one that leaves the statement out if, changed, it would repeat another party."""
         for party in self.parties:
             span = party.stated.span
-            if party.node is None or not span.overlaps(found.dial.place):
+            if party.stated.node is None or not span.overlaps(found.dial.place):
                 continue
             behind_it = len(span.source.text) - span.end
             text = self.trials.edited(found.fix.edits).text
@@ -370,12 +356,11 @@ class Explanation:
         return ("", "", "conflicts with the other", "conflicts with the others")[min(len(self.parties), 3)]
 
     def _would_fit(self, party: _StatedMember) -> str:
-        found = self._remedy_of(party)
-        if found is None:
+        if (found := self._remedy_of(party)) is None:
             return ""
-        assert party.node is not None
+        assert party.stated.node is not None
         times = self.times[party.stated.span]
-        told = found.would_fit(len(written_numbers(party.node)))
+        told = found.would_fit(len(written_numbers(party.stated.node)))
         return f"{told}, all {times} times" if times > 1 else told
 
     def _labels(self, chief: _StatedMember) -> Iterator[Label]:
@@ -416,8 +401,7 @@ class Explanation:
         yield from next(filter(None, apart), ())
         match self.failure.reason:
             case Failure.OVERDETERMINED:
-                wordings = [w for party in self.parties if isinstance(w := party.stated.wording, Wording)]
-                held = dict.fromkeys(f"`{name}`" for wording in wordings for name in wording.held())
+                held = dict.fromkeys(f"`{name}`" for each in self._wordings for name in each.held())
                 if held:
                     unknowns = self.lowered.unknowns
                     moving = listed([unknowns[i].description for i in self.failure.moving], NAMED)
@@ -430,13 +414,14 @@ class Explanation:
 
 def _apart(party: _StatedMember, gap: float) -> tuple[str, ...]:
     """Returns hints on the difference of the sides of `a == b` where the other parties hold; else none."""
-    node, stated = party.node, party.stated
+    node, stated = party.stated.node, party.stated
     if not isinstance(node, ast.Comparison) or node.operators != ("==",) or len(stated.comparisons) != 1:
         return ()
     (comparison,) = stated.comparisons
-    sides = [party.value(operand) for operand in node.operands]
+    values = [stated.wording and stated.wording.value(operand) for operand in node.operands]
+    sides = [value.value if isinstance(value, Num) else None for value in values]
     written = [comparison.left.value, comparison.right.value]  # how it is lowered may have turned them round
-    if comparison.dimension == ANGLE or [s and s.value for s in sides] != written or written[0] == written[1]:
+    if comparison.dimension == ANGLE or sides != written or written[0] == written[1]:
         return ()
     left, right = (operand.span.one_line for operand in node.operands)
     more = "more" if gap > 0.0 else "less"
@@ -447,7 +432,7 @@ def _apart(party: _StatedMember, gap: float) -> tuple[str, ...]:
 
 def _name(parties: Sequence[_StatedMember]) -> str:
     """Returns the name of the parties stated at one place: a loop states several."""
-    first, label = parties[0].name, parties[0].stated.label
+    first, label = f"`{shortened(parties[0].stated.text, _QUOTED)}`", parties[0].stated.label
     if len(parties) > 1:
         return f"{first} ({len(parties)} times)"
     return f"{first} [{label}]" if label else first
@@ -458,3 +443,155 @@ def measured_in(value: float, stated: Constraint) -> str:
     dimensions = {comparison.dimension for comparison in stated.comparisons}
     unit = " mm" if dimensions <= {LENGTH, None} else "°" if dimensions == {ANGLE} else ""
     return f"{short(value)}{unit}"
+
+
+# --- Ambiguous calls of programs that do not solve as their first guesses have them, read differently; and
+# programs that solve from another place only.
+#
+# Which angle between two lines is meant, and on which side a circle touches, is read off the first guesses.
+# Before anything is refused, and before a size changes much, the calls that take part are tried the other
+# ways.
+
+_MOST = 64  # the most ways that are tried
+_RANKS = (1, 2, 3)  # ranks by distance of the readings that are tried, after the nearest
+_SECONDS, _LONGEST = 4.0, 0.2  # time after which no other way is begun, and for one: what solves does so soon
+_MUCH = 0.1  # relative change of a size above which other readings are tried
+_STILL = 1e-6
+_DIGITS = (2, 3, 6)
+_LOOK = "look whether this is how it is meant"
+
+
+@record()
+class Rereading:
+    """A program that solved with ambiguous calls read differently; `calls` are their places and readings."""
+
+    built: Interpretation
+    lowered: Lowered
+    solution: Solution
+    calls: tuple[tuple[Span, str], ...]
+
+
+def reread(
+    built: Interpretation,
+    lowered: Lowered,
+    solution: Solution,
+    again: Callable[[Mapping[int, int]], Interpretation | None],
+    settings: Settings,
+) -> tuple[Rereading | None, Solution]:
+    """Returns the program with ambiguous calls read so that it solves and nothing dear gives way (None if it
+    does so as it is, or no such reading was found), and the solution as it is: a conflict of such calls is no
+    contradiction in it unless every reading was tried.
+    """
+    readings = list(built.model.readings)
+    troubled = _troubled(lowered, solution) if readings and settings.explain else ()
+    if not troubled:
+        return None, solution
+    clock, seen = Clock(_SECONDS), [readings]
+    quick = replace(settings, explain=False, seconds=min(settings.seconds, _LONGEST))
+    near = _numbers(readings, lowered, troubled)
+    far = _numbers(readings, lowered, {i for failure in solution.failures for i in failure.within})
+    for turned in _ways([*near, *(n for n in far if n not in near)]):
+        if clock.expired or len(seen) > _MOST:
+            return None, _undecided(lowered, solution, readings)
+        other = again(turned)
+        if other is None or (taken := list(other.model.readings)) in seen:
+            continue
+        seen.append(taken)
+        made = lower(other.model)
+        places = ((f.conflict, dict(f.nearest)) for f in solution.failures)  # by number, the same as before
+        if any(nearby_solution(made.problem, quick, *place) is None for place in places):
+            continue  # which is known sooner than by solving
+        found = solve(made.problem, quick)
+        if found.status is Status.SOLVED and not any(stage.concession for stage in found.stages):
+            calls = tuple(taken[n] for n in turned if n < len(taken))
+            return Rereading(other, made, found, calls), solution
+    return None, solution
+
+
+def _numbers(readings: Sequence[tuple[Span, str]], lowered: Lowered, indices: Iterable[int]) -> list[int]:
+    spans = {c.span for i in indices if (c := lowered.stated[i]) is not None}
+    return [n for n, (span, _) in enumerate(readings) if any(map(span.overlaps, spans))]
+
+
+def _ways(numbers: Sequence[int]) -> Iterator[dict[int, int]]:
+    """Yields changes of readings, as ranks by number: of one reading, of two, and so on."""
+    for count in range(1, len(numbers) + 1):
+        for chosen in itertools.combinations(numbers, count):
+            for ranks in itertools.product(_RANKS, repeat=count):
+                yield dict(zip(chosen, ranks, strict=True))
+
+
+def _undecided(lowered: Lowered, solution: Solution, readings: Sequence[tuple[Span, str]]) -> Solution:
+    """Returns the solution with failures that ambiguous calls have a share in no longer counted as proven."""
+    failures = tuple(
+        replace(f, reason=Failure.NOT_CONVERGED) if _numbers(readings, lowered, f.conflict) else f
+        for f in solution.failures
+    )
+    return replace(solution, failures=failures)
+
+
+def _troubled(lowered: Lowered, solution: Solution) -> Collection[int]:
+    """Returns the constraints that take part in a failure, or that made a size change much."""
+    found = {i for failure in solution.failures for i in failure.conflict}
+    for stage in solution.stages:
+        for unknown in stage.concession.unknowns if stage.concession is not None else ():
+            was, now = lowered.problem.initial[unknown], solution.values[unknown]
+            if lowered.problem.kept[unknown] and abs(now - was) > _MUCH * abs(was):
+                assert stage.concession is not None
+                found.update(stage.concession.constraints)
+    return found
+
+
+def elsewhere_notes(
+    model: Model, lowered: Lowered, solution: Solution, other: Rereading | None, trials: Trials
+) -> Iterator[Diagnostic]:
+    """Yields notes, with fitting first guesses, on calls read differently and on places found far off."""
+    if solution.status is not Status.SOLVED:
+        return
+    if other is not None:
+        spans = [span for span, _ in other.calls]
+        moved = [c for c in lowered.stated if c is not None and any(map(c.span.overlaps, spans))]
+        names = listed(ticked(span.one_line for span in spans), NAMED)
+        are = "are" if len(spans) > 1 else "is"
+        message = f"{names} {are} not taken as the first guesses have it, for which no position was found"
+        (first, label), *others = other.calls
+        labels = tuple(Label(span, text) for span, text in others)
+        fix = _guesses(model, lowered, solution, moved, trials)
+        yield Diagnostic("N0604", message, first, label, labels, (_LOOK,), fix)
+    for stage in solution.stages:
+        despite = [c for i in stage.despite if (c := lowered.stated[i]) is not None]
+        if despite:
+            names = named((c.text for c in despite), NAMED)
+            hold = "hold" if len(despite) > 1 else "holds"
+            first, *rest = dict.fromkeys(c.span for c in despite)
+            message = f"near the first guesses no position was found in which {names} {hold}; another one was"
+            labels = tuple(Label(span, "takes part") for span in rest)
+            fix = _guesses(model, lowered, solution, despite, trials)
+            yield Diagnostic("N0604", message, first, "holds elsewhere", labels, (_LOOK,), fix)
+
+
+def _guesses(
+    model: Model, lowered: Lowered, solution: Solution, stated: Sequence[Constraint], trials: Trials
+) -> Fix | None:
+    """Returns a fix that writes first guesses from which the program solves as written; or None."""
+    places = dict(zip(lowered.unknowns, solution.values.tolist(), strict=True))
+    was = dict(zip(lowered.unknowns, lowered.problem.initial.tolist(), strict=True))
+    mentioned = set(unknowns(e for c in stated for part in c.comparisons for e in (part.left, part.right)))
+    everything = {u for u in places if abs(places[u] - was[u]) > _STILL}
+    evaluate = Evaluator(places)
+    for moved, digits in itertools.product((everything & mentioned, everything), _DIGITS):
+        edits: dict[Span, set[str]] = {}
+        for literal in model.literals:
+            if isinstance(literal.became.payload, Unknown) and literal.became.payload in moved:
+                text = _text(literal.node, evaluate(literal.became), digits)
+                edits.setdefault(literal.node.span, set()).add(text)
+        written = tuple(Edit(span, text) for span, (text, *more) in edits.items() if not more)
+        if written and trials.settles(written):
+            return Fix("write first guesses that are near to it", written)
+    return None
+
+
+def _text(node: ast.Expression, value: float, digits: int) -> str:
+    number = node.operand if isinstance(node, ast.Unary) else node
+    unit = number.unit if isinstance(number, ast.Number) and number.unit else ""
+    return f"{short(float(f'{value / (UNITS[unit][0] if unit else 1.0):.{digits}g}'))}{unit}"

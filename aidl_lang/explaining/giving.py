@@ -10,8 +10,7 @@ import numpy as np
 
 from aidl_lang.building.expression import Unknown
 from aidl_lang.building.lower import Lowered
-from aidl_lang.building.model import Constraint, Structure
-from aidl_lang.building.wording import Wording
+from aidl_lang.building.model import Constraint, Structure, told
 from aidl_lang.common.diagnostics import Diagnostic, Fix, Label
 from aidl_lang.common.prose import listed, short
 from aidl_lang.common.records import record
@@ -30,10 +29,8 @@ from aidl_lang.solver.problem import Failure
 # --- The sizes and frames that gave way unasked, with the constraints that ask for it: sizes that changed,
 # frames that moved though their content is exact or no constraint names them (language, "What gives way").
 
-_A_TENTH = 0.1 + 1e-9
-"""Greatest relative change of a size that is no warning."""
-_STILL = 1e-6
-"""Moves of a frame below this, in mm or degrees, count as none."""
+_A_TENTH = 0.1 + 1e-9  # greatest relative change of a size that is no warning
+_STILL = 1e-6  # moves of a frame below this, in mm or degrees, count as none
 
 
 @record()
@@ -49,14 +46,14 @@ class GaveWay:
 
 def gave_way(lowered: Lowered, solution: Solution, settings: Settings) -> tuple[GaveWay, ...]:
     """Returns what gave way in a solution, by reason."""
-    found, told = list[GaveWay](), set[int]()
+    found, seen = list[GaveWay](), set[int]()
     for stage in reversed(solution.stages):
         if (concession := stage.concession) is None:
             continue
         together: dict[tuple[Constraint, ...], GaveWay] = {}
         for reason in reasons(lowered.problem, settings, concession, solution.values):
-            one = _given(lowered, solution, reason, told)
-            told |= reason.unknowns
+            one = _given(lowered, solution, reason, seen)
+            seen |= reason.unknowns
             if one.moved:
                 # A constraint inherent in a shape is reported with the author's constraints on that shape.
                 said = tuple(c for c in one.because if not c.is_inherent)
@@ -67,11 +64,11 @@ def gave_way(lowered: Lowered, solution: Solution, settings: Settings) -> tuple[
     return tuple(reversed(found))
 
 
-def _given(lowered: Lowered, solution: Solution, reason: Reason, told: Container[int]) -> GaveWay:
+def _given(lowered: Lowered, solution: Solution, reason: Reason, seen: Container[int]) -> GaveWay:
     moved = {}
     for index in sorted(reason.unknowns):
         before, now = float(lowered.problem.initial[index]), float(solution.values[index])
-        if index not in told and abs(now - before) > _STILL:
+        if index not in seen and abs(now - before) > _STILL:
             moved[lowered.unknowns[index]] = before, now
     stated = [c for i in reason.constraints if (c := lowered.stated[i]) is not None]
     stated.sort(key=lambda c: c.span.start)
@@ -205,7 +202,7 @@ def _is_named(structure: Structure, given: GaveWay) -> bool:
 def _whose(given: GaveWay) -> tuple[str, ...]:
     if not given.because:
         return ()
-    names = [f"`{c.text}`" + (f" [{c.label}]" if c.label else "") for c in given.because]
+    names = [told(c) for c in given.because]
     ask = f"{listed(names, 6)} ask{'s' * (len(names) == 1)} for it"
     single = len(names) > 1 and given.minimal
     return (f"{ask}: without any one of them it would have stayed" if single else ask,)
@@ -227,18 +224,14 @@ def _told(
 # --- Reports constraints that follow from others and parts whose freedom is undecided; tells whether one
 # constraint follows.
 
-_NAMED = 4
-"""The most constraints that the headline names."""
+_NAMED = 4  # the most constraints that the headline names
 _LARGEST = 2000
 """The most unknowns of a model that is solved again to see whether a constraint can be left out."""
-_SAME = 1e-6
-"""Change of a value, in units of its scale, that counts as none."""
+_SAME = 1e-6  # change of a value, in units of its scale, that counts as none
 _BROKEN = 1e-2
 """Violation of an inequality, in units of its scale, that is tried to see whether others forbid it."""
-_TRIED = 20
-"""The most inequalities that are tried so, one by one."""
-_SECONDS = 1.0
-"""Time for each of them."""
+_TRIED = 20  # the most inequalities that are tried so, one by one
+_SECONDS = 1.0  # time for each of them
 
 
 def repetition_notes(lowered: Lowered, solution: Solution, freedom: Freedom) -> list[Diagnostic]:
@@ -261,24 +254,18 @@ def _note(lowered: Lowered, found: Redundancy, can_go: bool) -> Diagnostic:
     stated = lowered.stated[found.constraint]
     assert stated is not None
     others = [other for i in found.follows_from if (other := lowered.stated[i]) is not None]
-    names = list(dict.fromkeys(_name(other) for other in others))
+    names = list(dict.fromkeys(told(other) for other in others))
     reason = listed(names, _NAMED) or "the other constraints"
     labels = dict.fromkeys(Label(other.span, "from this") for other in others if other.span != stated.span)
-    name, left = _name(stated), left_out(stated) if can_go else None
+    name, left = told(stated), left_out(stated) if can_go else None
     fix = Fix(f"leave out {name}", left.edits) if left else None
     message = f"{name} follows from {reason}"
     return Diagnostic("N0602", message, stated.span, "says nothing new", tuple(labels), fix=fix)
 
 
-def _name(stated: Constraint) -> str:
-    return f"`{stated.text}` [{stated.label}]" if stated.label else f"`{stated.text}`"
-
-
 def _is_single(stated: Constraint | None, times: Counter[Span]) -> bool:
     """Tells whether its place states this constraint and no other: no loop, no template."""
-    if stated is None or not isinstance(stated.wording, Wording):
-        return False
-    return stated.wording.node.span == stated.span and not stated.label and times[stated.span] == 1
+    return stated is not None and stated.node is not None and not stated.label and times[stated.span] == 1
 
 
 def _changes_nothing(lowered: Lowered, solution: Solution, left_out: Sequence[int]) -> bool:

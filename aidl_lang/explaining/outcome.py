@@ -4,15 +4,25 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from aidl_lang.building.boxes import SIDES, constrain_sources
 from aidl_lang.building.expression import Evaluator, nodes
 from aidl_lang.building.lower import Lowered
-from aidl_lang.building.model import Assertion, Comparison, Condition, Geometry, Measurement, Model, Structure
-from aidl_lang.building.wording import RELATIONS, Wording, differences, givens, holds, rounding
+from aidl_lang.building.model import (
+    Assertion,
+    Comparison,
+    Condition,
+    Geometry,
+    Measurement,
+    Model,
+    Part,
+    Structure,
+    told,
+)
+from aidl_lang.building.wording import RELATIONS, differences, givens, holds, rounding
 from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix, Label
 from aidl_lang.common.prose import fixed, rough
 from aidl_lang.common.source import Span
@@ -66,8 +76,7 @@ def _wishes(lowered: Lowered, solution: Solution) -> Iterator[Diagnostic]:
             continue
         from aidl_lang.explaining.failures import measured_in
 
-        where = f" [{stated.label}]" if stated.label else ""
-        message = f"the wish `{stated.text}`{where} is not met"
+        message = f"the wish {told(stated)} is not met"
         label = f"off by {measured_in(off, stated)}" if math.isfinite(off) else "it has no value here"
         hint = "a wish gives way to every constraint; without `prefer` it is told what stands against it"
         yield Diagnostic("N0605", message, stated.span, label, hints=(hint,))
@@ -96,12 +105,12 @@ def assertion_note(assertion: Assertion, evaluate: Evaluator) -> Diagnostic | No
     where = f" [{assertion.label}]" if assertion.label else ""
     false = list(_false_parts(assertion.condition, evaluate))
     wording = assertion.wording
-    shown = differences(wording, evaluate, _TOLERANCE) if isinstance(wording, Wording) else []
+    shown = differences(wording, evaluate, _TOLERANCE) if wording is not None else []
     if assertion.outline is not None:
         if _is_fitted(false, assertion.outline, evaluate):
             return None
         return _other_box(assertion, assertion.outline, shown or [_compared(c, evaluate) for c in false])
-    places = givens(wording) if isinstance(wording, Wording) and not false and not assertion.shape else ()
+    places = givens(wording) if wording is not None and not false and not assertion.shape else ()
     near = [h for c in false if c.relation == "==" for h in rounding(evaluate(c.left), evaluate(c.right))]
     span = assertion.span
     label = "; ".join(shown or [_compared(c, evaluate) for c in false]) or "false as written"
@@ -151,8 +160,7 @@ def _is_fitted(false: Sequence[Comparison], outline: Geometry, evaluate: Evaluat
 
 def _other_box(assertion: Assertion, outline: Geometry, shown: Sequence[str]) -> Diagnostic:
     """Returns the diagnostic for a constraint on the box of an outline that came out otherwise."""
-    where = f" [{assertion.label}]" if assertion.label else ""
-    message = f"`{assertion.text}`{where} does not hold for `{outline.path}` as it is drawn"
+    message = f"{told(assertion)} does not hold for `{outline.path}` as it is drawn"
     hint = f"it was solved with the boxes of what goes into `{outline.type}`, and less is left of them"
     hints = hint, constrain_sources(outline, assertion.holder)
     return Diagnostic("E0607", message, assertion.span, "; ".join(shown), hints=hints)
@@ -177,7 +185,7 @@ def _stated(assertion: Assertion) -> Fix | None:
     """Returns a fix that constrains what an `assert` of the author asks, before it; None if impossible."""
     span, wording = assertion.span, assertion.wording
     before = span.source.text[: span.start].rstrip()
-    is_own = isinstance(wording, Wording) and wording.node.span == span
+    is_own = wording is not None and wording.node.span == span
     if not is_own or not before.endswith(_WORD) or not _can_be_stated(assertion.condition):
         return None
     start = len(before) - len(_WORD)
@@ -200,9 +208,7 @@ def _can_be_stated(condition: Condition | bool) -> bool:
     return len(parts) == len(condition.parts) and not _is_measured(parts)
 
 
-def _false_parts(
-    condition: Condition | Comparison | bool, evaluate: Callable[..., float]
-) -> Iterator[Comparison]:
+def _false_parts(condition: Part, evaluate: Evaluator) -> Iterator[Comparison]:
     if isinstance(condition, Comparison):
         if not holds(condition, evaluate, _TOLERANCE):
             yield condition
@@ -211,7 +217,7 @@ def _false_parts(
             yield from _false_parts(part, evaluate)
 
 
-def _compared(comparison: Comparison, evaluate: Callable[..., float]) -> str:
+def _compared(comparison: Comparison, evaluate: Evaluator) -> str:
     from aidl_lang.common.prose import short
 
     left, right = evaluate(comparison.left), evaluate(comparison.right)

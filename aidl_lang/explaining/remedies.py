@@ -13,7 +13,6 @@ import numpy as np
 
 from aidl_lang.building.lower import Lowered
 from aidl_lang.building.model import Constraint
-from aidl_lang.building.wording import Wording
 from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix, Label
 from aidl_lang.common.prose import short
 from aidl_lang.common.records import record
@@ -28,46 +27,31 @@ from aidl_lang.solver.problem import Failure, GroupFailure, Member
 # constraints follows where the number would have to be. It is told only if the program, with just what is
 # printed in its place, then solves and nothing gives way.
 
-_NUDGE = 1e-3
-"""Relative change of a number by which its influence is measured."""
-_ABREAST = 6
-"""Number of searches that are compared by the change they would need before they start."""
-_FIXED = 2.0
-"""Factor by which a change of a `fixed` number costs more than the same change of another."""
-_LONG = 2.0
-"""Factor by which a number of many digits costs more."""
-_STEPS = 4
-"""The most times that the place of a number is sought anew if its influence is not linear."""
-_NOTHING = 1e-9
-"""Relative change of the violation that counts as none."""
-_VANISHES = 1e-4
-"""Relative distance from 0 below which a number is 0."""
-_ARRIVED = 1e-7
-"""Part of the violation that is left by rounding at a number that fits."""
-_FAR = 20.0
-"""Factor of the number's size beyond which no author means another one."""
+_NUDGE = 1e-3  # relative change of a number by which its influence is measured
+_ABREAST = 6  # number of searches that are compared by the change they would need before they start
+_FIXED = 2.0  # factor by which a change of a `fixed` number costs more than the same change of another
+_LONG = 2.0  # factor by which a number of many digits costs more
+_STEPS = 4  # the most times that the place of a number is sought anew if its influence is not linear
+_NOTHING = 1e-9  # relative change of the violation that counts as none
+_VANISHES = 1e-4  # relative distance from 0 below which a number is 0
+_ARRIVED = 1e-7  # part of the violation that is left by rounding at a number that fits
+_FAR = 20.0  # factor of the number's size beyond which no author means another one
 _NEAR, _MEANT = 1e-9, 4
 """Relative distance to a shorter number at which that one is meant, and the most decimals of such a one."""
-_COARSE = 1e-2
-"""Part of a change that may be added to make a number short, if there is a range."""
-_FURTHER = 0.25
-"""Part of a change that is added to try whether numbers beyond fit as well."""
-_SHARP = 0.03
-"""Part of a change by which a number before the end of a range must fail to fit."""
-_BEYOND = (1.0, 2.0, 4.0, 8.0)
-"""Parts of a change that are added in search of the other end of a range."""
+_COARSE = 1e-2  # part of a change that may be added to make a number short, if there is a range
+_FURTHER = 0.25  # part of a change that is added to try whether numbers beyond fit as well
+_SHARP = 0.03  # part of a change by which a number before the end of a range must fail to fit
+_BEYOND = (1.0, 2.0, 4.0, 8.0)  # parts of a change that are added in search of the other end of a range
 _INWARD, _INWARD_SHARE = 0.125, 0.02
 """Parts of a change and of a number by which a number lies within a range at whose end all lies flat."""
-_LITTLE = 0.02
-"""Part of a number that is tried in place of 0."""
+_LITTLE = 0.02  # part of a number that is tried in place of 0
 _DIVISORS = range(2, 65)
 _DIGITS = (6, 9, 12)
 _SHORT, _PLAIN, _ROUGH = 2, 3, 5
 """Digits of an end that is hardly met by chance, of a number that is easily written, and of one that is worth
 mentioning where any point would do.
 """
-_WHOLE = (-1.0, 1.0, -2.0, 2.0)
-"""Changes that are tried of a number that must be whole."""
+_WHOLE = (-1.0, 1.0, -2.0, 2.0)  # changes that are tried of a number that must be whole
 
 
 @record()
@@ -179,9 +163,7 @@ class RemedySearch:
         return self._remedy(opposite, opposite.shown) if fits else None
 
     def _found(self) -> Remedy | None:
-        if self._even_target is None:
-            return self._whole()
-        return self._near(self._even_target)
+        return self._whole() if self._even_target is None else self._near(self._even_target)
 
     @cached_property
     def _even_target(self) -> float | None:
@@ -420,8 +402,7 @@ _ALLOWING = re.compile(r"@allow\([^()]*\)(\s|//[^\n]*\n|@allow\([^()]*\))*(const
 def left_out(constraint: Constraint) -> Fix | None:
     """Removes a statement that stands alone on a line or between semicolons, with `@allow(…)` said of it."""
     span, text = constraint.span, constraint.span.source.text
-    allowing = _ALLOWING.search(text, 0, span.start)
-    if allowing is not None:
+    if (allowing := _ALLOWING.search(text, 0, span.start)) is not None:
         span = replace(span, start=allowing.start())
     line = text.rfind("\n", 0, span.start) + 1
     end = text.find("\n", span.end) + 1 or len(text)
@@ -453,10 +434,8 @@ def wished(constraint: Constraint) -> Fix:
 
 NEVER, _ASSERTED = "E0513", "E0604"
 _CODES = frozenset({NEVER, _ASSERTED})
-_MOST = 0.5
-"""Greatest relative change of a number that is offered as a fix: a greater one is mentioned only."""
-_PLACES = 5
-"""The most places that a message shows beside its own."""
+_MOST = 0.5  # greatest relative change of a number that is offered as a fix: a greater one is mentioned only
+_PLACES = 5  # the most places that a message shows beside its own
 
 
 def with_failing_constants(lowered: Lowered, solution: Solution) -> Solution:
@@ -479,8 +458,7 @@ def with_remedies(
     """
     failures: dict[Span, tuple[Constraint, GroupFailure]] = {}
     for failure in trials.solution.failures:
-        stated = trials.lowered.stated[failure.conflict[0]]
-        if stated is not None:
+        if (stated := trials.lowered.stated[failure.conflict[0]]) is not None:
             failures.setdefault(stated.span, (stated, failure))
     return [
         _answered(d, *failures[d.span], everything, trials)
@@ -496,8 +474,7 @@ def _answered(
     """Returns a finding with numbers that fit where its values are given, and the least change of these as
     the fix. If there are none, names a number that fits in a constraint; an `assert` is not up for change.
     """
-    wording = stated.wording
-    if not isinstance(wording, Wording) or wording.node.span != stated.span:
+    if (wording := stated.wording) is None or (node := stated.node) is None:
         return d
 
     def fitting(dials: Sequence[Dial]) -> Iterator[Remedy]:
@@ -505,14 +482,14 @@ def _answered(
         return (each for each in remedies(searches) if mends(d, each.fix, everything, trials))
 
     uses = wording.it.program.resolution.uses
-    given = sorted(fitting(exact_numbers([wording.node], uses)), key=lambda each: (each.counts, each.share))
+    given = sorted(fitting(exact_numbers([node], uses)), key=lambda each: (each.counts, each.share))
     if given:
         labels = d.secondary
         for each in given:
             labels = _with(labels, each)
         fix = given[0].fix if given[0].share <= _MOST else None
         return replace(d, secondary=labels[:_PLACES], fix=fix)
-    dials = written_numbers(wording.node) if d.code == NEVER else []
+    dials = written_numbers(node) if d.code == NEVER else []
     if (own := next(fitting(dials), None)) is None:
         return d
     return replace(d, label="; ".join(filter(None, (d.label, own.would_fit(len(dials))))))

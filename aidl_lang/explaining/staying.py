@@ -10,7 +10,6 @@ from aidl_lang.building.boxes import box_of, source_unknowns
 from aidl_lang.building.expression import Evaluator, Expression, Unknown
 from aidl_lang.building.lower import Lowered
 from aidl_lang.building.model import Constraint, Geometry, Structure
-from aidl_lang.building.wording import Wording
 from aidl_lang.common.diagnostics import Diagnostic, Label
 from aidl_lang.common.prose import named, short
 from aidl_lang.common.records import record
@@ -20,12 +19,9 @@ from aidl_lang.syntax import ast
 # --- Things left where they were written though what they were drawn for moved: details that were drawn
 # inside of something, ways of which constraints take both ends.
 
-_STILL = 1e-6
-"""Moves below this, in mm, count as none."""
-_FAR = 0.1
-"""The part of its own extent, or of both, by which something may move without a word."""
-_NAMED = 3
-"""Siblings told by name."""
+_STILL = 1e-6  # moves below this, in mm, count as none
+_FAR = 0.1  # the part of its own extent, or of both, by which something may move without a word
+_NAMED = 3  # siblings told by name
 _SIDES = ("left", "bottom", "right", "top")
 _ENDS = frozenset({"start", "end"})
 _MEASURED = frozenset({"edges", "length"})
@@ -216,7 +212,7 @@ def _lost_form(
 
 
 def _members_in(constraint: Constraint) -> Iterator[str]:
-    if isinstance(constraint.wording, Wording):
+    if constraint.wording is not None:
         for node in ast.walk(constraint.wording.node):
             if isinstance(node, ast.Member):
                 yield node.name.text
@@ -224,8 +220,7 @@ def _members_in(constraint: Constraint) -> Iterator[str]:
 
 # --- Details that constraints from outside moved within their structure, away from what is drawn beside
 # them.
-_SECONDS = 1.0
-"""For the search for a place of a structure as a whole."""
+_SECONDS = 1.0  # for the search for a place of a structure as a whole
 
 
 @record()

@@ -27,8 +27,7 @@ from aidl_lang.solver.newton import Clock
 from aidl_lang.solver.problem import GroupFailure
 from aidl_lang.syntax import ast
 
-_MOST = 12
-"""The most exact numbers behind the names mentioned; nearer ones first."""
+_MOST = 12  # the most exact numbers behind the names mentioned; nearer ones first
 _FACTORING = ("*", "/", "%", "^")
 _BY_DEFINITION = frozenset({SymbolKind.FUNCTION, SymbolKind.SHAPE, SymbolKind.CONSTRAINT, SymbolKind.ALIAS})
 """Kinds of symbols that belong to the vocabulary rather than to the drawing."""
@@ -165,16 +164,12 @@ MOST = 5
 """The most failures that prolong the latter, each by the former."""
 GAVE_WAY = frozenset({"N0601", "W0601", "W0602"})
 """Codes of diagnostics that report what gave way."""
-_TOLD = GAVE_WAY | {"N0604"}
-"""These codes, and that of a program solved from elsewhere."""
-_LONGEST = 0.5
-"""Seconds for one solve."""
+_TOLD = GAVE_WAY | {"N0604"}  # these codes, and that of a program solved from elsewhere
+_LONGEST = 0.5  # seconds for one solve
 _FLAT = 3e-3
 """Singular values of unit rows that count as none: a search stops near the place where all lies flat."""
-_TURNS = 1e-3
-"""Change of the slope of a unit row that is none by rounding."""
-_MOVED = 1e-6
-"""Moves below this, in mm or degrees, count as none."""
+_TURNS = 1e-3  # change of the slope of a unit row that is none by rounding
+_MOVED = 1e-6  # moves below this, in mm or degrees, count as none
 
 
 @record(frozen=False)
@@ -229,8 +224,7 @@ class Trials:
         """Returns the violation of the constraints of a failure with no kept size changed, after the edits
         (see `solver.refuting`); None if the program then has errors or is another one.
         """
-        found = self._counterpart(edits, failure)
-        if found is None:
+        if (found := self._counterpart(edits, failure)) is None:
             return None
         other, matched, numbered = found
         if (known := self._lacks.get((id(other), failure.conflict))) is not None:
@@ -253,13 +247,10 @@ class Trials:
         return others.difference(failure.conflict)
 
     def residual(self, edits: Sequence[Edit], failure: GroupFailure, member: int) -> float | None:
-        """Returns the residual of a member of a failure after the edits, with its sign, where its other
-        members hold; None if no such place was found.
-        """
+        """Returns the signed residual of a member after edits where the others hold; None if nowhere."""
         if (place := self._without(failure, member)) is None:
             return None
-        found = self._counterpart(edits, failure)
-        if found is None:
+        if (found := self._counterpart(edits, failure)) is None:
             return None
         other, matched, numbered = found
         there = {numbered[u]: value for u, value in place.items()}
@@ -411,8 +402,7 @@ def _in_order(lowered: Lowered) -> list[int]:
     """Returns the constraints in the order of the text; those that nobody stated come last."""
 
     def place(index: int) -> tuple[bool, str, int, str, int]:
-        stated = lowered.stated[index]
-        if stated is None:
+        if (stated := lowered.stated[index]) is None:
             return True, "", 0, "", index
         return False, stated.span.source.name, stated.span.start, stated.label, index
 

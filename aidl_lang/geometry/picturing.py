@@ -266,7 +266,7 @@ class _Reader:
         corners: list[Bounds] = []
         if s.plan:
             left, bottom, width, height = s.plan
-            for corner in ((left, bottom), (ex.add(left, width), ex.add(bottom, height))):
+            for corner in ((left, bottom), (left + width, bottom + height)):
                 x, y = self.place(self.evaluate(corner[0]), self.evaluate(corner[1]), s)
                 corners.append((x, y, x, y))
         return solved.Box.around((curve for g in geometry for curve in g.curves()), children, corners)

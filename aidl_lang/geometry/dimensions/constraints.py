@@ -12,7 +12,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 
 from aidl_lang.building.boxes import Box, spelled_out
-from aidl_lang.building.expression import ZERO, Evaluator, Expression, constant
+from aidl_lang.building.curves import NOWHERE
+from aidl_lang.building.expression import ONE, ZERO, Evaluator, Expression, Place, constant
 from aidl_lang.building.impose import axis_of, measured, options
 from aidl_lang.building.model import Constraint, Geometry, Model, Structure, convert, convert_angle
 from aidl_lang.building.values import NOTHING, Array, ListVal, Num, PointVal, TextVal, Value, members
@@ -43,7 +44,7 @@ def stated_lengths(model: Model, scene: Scene) -> Iterator[Dimension]:
     """Yields the dimensions that the constraints of the author measure, in order of writing."""
     for constraint in model.constraints:
         checkpoint()
-        if constraint.weight is None and isinstance(constraint.wording, Wording):
+        if constraint.weight is None and constraint.wording is not None:
             yield from _Statement(scene, constraint, constraint.wording).dimensions()
 
 
@@ -51,7 +52,7 @@ def by_hand(model: Model, scene: Scene) -> Iterator[Dimension]:
     """Yields the dimensions that the program asks for, in order of writing."""
     for asked in model.by_hand:
         checkpoint()
-        assert isinstance(asked.wording, Wording)
+        assert asked.wording is not None
         yield from _Statement(scene, asked, asked.wording).asked_for()
 
 
@@ -369,7 +370,7 @@ class _Statement:
 
     def _at(self, p: PointVal) -> Vec:
         here = self.constraint.holder
-        x, y = spelled_out(*convert(p.x.expression, p.y.expression, here, self.scene.root))
+        x, y = spelled_out(*convert(p.place, here, self.scene.root))
         return self.scene.evaluate(x), self.scene.evaluate(y)
 
     def _line(self, node: ast.Expression) -> Line | None:
@@ -383,8 +384,8 @@ class _Statement:
     def _way(self, axis: int) -> Vec:
         """Returns the direction of an axis of the holder in coordinates of the root."""
         here, root = self.constraint.holder, self.scene.root
-        unit = (constant(1.0), ZERO) if axis == 0 else (ZERO, constant(1.0))
-        (x0, y0), (x1, y1) = (map(self.scene.evaluate, convert(*p, here, root)) for p in ((ZERO, ZERO), unit))
+        unit = Place(ONE, ZERO) if axis == 0 else Place(ZERO, ONE)
+        (x0, y0), (x1, y1) = (map(self.scene.evaluate, convert(p, here, root)) for p in (NOWHERE, unit))
         return x1 - x0, y1 - y0
 
     def _callee(self, call: ast.Call) -> str:

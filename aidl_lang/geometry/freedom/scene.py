@@ -12,7 +12,6 @@ from aidl_lang.building.curves import DIRECTIONS
 from aidl_lang.building.expression import DEGREE
 from aidl_lang.building.lower import Lowered, seen
 from aidl_lang.building.model import Constraint, Geometry, Model, Structure
-from aidl_lang.building.wording import Wording
 from aidl_lang.common.records import record
 from aidl_lang.geometry.curves import Floats, Ints, Mask
 from aidl_lang.solver.analysis import Motions, Part
@@ -265,7 +264,7 @@ def _related(constraint: Constraint) -> tuple[str, ...]:
         if not any(_is_in(other, path) for other in mentioned | boxes if other != path)
     }
     found = boxes | others
-    if len(found) < 2 and isinstance(constraint.wording, Wording):
+    if len(found) < 2 and constraint.wording is not None:
         found |= {thing.path for thing in constraint.wording.named()}
     return tuple(sorted(found))
 

@@ -87,7 +87,7 @@ def _of_geometry(model: Model, geometry: Geometry, depth: int) -> Iterator[Grip]
     inside = list(_inside(geometry, ""))
     named = made_by + (inside if len(inside) <= MOST_PARTS else [])
     for name, place in named:
-        x, y = convert(*xy(place), geometry.owner, model.root)
+        x, y = convert(xy(place), geometry.owner, model.root)
         at = f"{geometry.path}.{name}" if name else geometry.path
         if not (x.is_open or y.is_open):
             yield Grip(at, geometry.path, name, x, y, geometry, depth + name.count("."))
@@ -162,9 +162,8 @@ def pull(model: Model, grip: Grip, directions: Sequence[Vec], to: Vec, weight: f
     """Returns the wish that a point be somewhere along some directions; hard without a weight."""
     rows = []
     for u, v in directions:
-        x, y = ex.mul(ex.constant(u), grip.x), ex.mul(ex.constant(v), grip.y)
         wanted = ex.constant(u * to[0] + v * to[1])
-        rows.append(Comparison("==", ex.add(x, y), wanted, LENGTH, frozenset()))
+        rows.append(Comparison("==", u * grip.x + v * grip.y, wanted, LENGTH, frozenset()))
     return Constraint(model.root, tuple(rows), grip.id, _NOWHERE, weight)
 
 

@@ -7,7 +7,7 @@ from collections import defaultdict
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 
-from aidl_lang.building.expression import Evaluator, Expression, Unknown, add, sub
+from aidl_lang.building.expression import Evaluator, Expression, Place, Unknown
 from aidl_lang.building.lower import seen
 from aidl_lang.building.model import Model, Structure, convert
 from aidl_lang.common.diagnostics import Diagnostic, TooLongError, within
@@ -129,7 +129,7 @@ class _Flow:
     def _at(self, k: int) -> tuple[Expression, Expression]:
         if k not in self._in_root:
             _, structure, x, y = self._points[k]
-            self._in_root[k] = convert(x, y, structure, self._model.root)
+            self._in_root[k] = convert(Place(x, y), structure, self._model.root)
         return self._in_root[k]
 
 
@@ -144,8 +144,8 @@ def _points(structure: Structure) -> Iterator[tuple[str, Expression, Expression]
             center = holder, *numbers
         elif name == "radius" and center is not None and center[0] == holder:
             _, x, y = center
-            yield path, add(x, numbers[0]), y
-            yield path, sub(x, numbers[0]), y
+            yield path, x + numbers[0], y
+            yield path, x - numbers[0], y
 
 
 @record()
