@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Sequence
 from copy import copy
-from difflib import SequenceMatcher
 from functools import cached_property, partial
 from typing import Any, NamedTuple
 
@@ -322,6 +321,8 @@ def reread(tokens: Sequence[Token], fix: Fix) -> TokenRepair:
     """Returns the repair that reads what a fix writes: the tokens that it keeps, and new ones in the places
     of those they stand for.
     """
+    from difflib import SequenceMatcher  # takes time to load, and most programs need no mending
+
     found: list[Token] = []
     places: list[int] = []
     for edit in sorted(fix.edits, key=lambda edit: edit.span.start):
