@@ -46,12 +46,14 @@ def tries(count: int, **more: Any) -> settings:
 
 _MANY, _ONE_IN = 12, 4
 _CORPORA = (
-    *(f"tests/{room}/" for room in ("checker", "drawings", "export", "geometry", "ide", "llm", "preview")),
-    *(f"tests/{room}/" for room in ("property", "resolve", "solver", "typecheck")),
+    *(f"tests/{room}/" for room in ("checker", "drawings", "export", "geometry", "ide")),
+    *(f"tests/property/test_{name}.py" for name in ("constraints", "hostile_library", "paths", "shapes")),
+    "tests/resolve/",
+    "tests/solver/",
     "dev/tests/",
     "eval/tests/",
 )
-"""What is tried in shares; specs, pages and commands are tried whole on every run."""
+"""What is tried in shares; specs, pages, commands and what keeps users safe are tried whole on every run."""
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
