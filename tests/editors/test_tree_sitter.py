@@ -24,7 +24,7 @@ from aidl_lang.syntax import ast
 from aidl_lang.syntax.rewriting import begins_with_sign
 from aidl_lang.syntax.tables import load_tables, tokenize
 from aidl_lang.tools.vocabulary import vocabulary
-from tests.amount import TRIES_ALL, large
+from tests.amount import TRIES_ALL, large, some
 from tests.documents import ROOT, programs
 from tests.editors.trees import FOLDER, beyond, nodes, parse, refused
 from tests.fuzz.sources import mutant
@@ -105,8 +105,8 @@ def test_every_program_of_the_project_is_read_without_an_error() -> None:
 
 def test_every_program_is_taken_or_refused_as_by_the_parser() -> None:
     assert len(all_programs()) > 1500
-    some = sorted(all_programs().items())[:: 1 if TRIES_ALL else 3]
-    verdicts = {place: (refused(parse(text)), errors(text)) for place, text in some}
+    programs = some(sorted(all_programs().items()), 3)
+    verdicts = {place: (refused(parse(text)), errors(text)) for place, text in programs}
     different = {place: said for place, said in verdicts.items() if bool(said[0]) != bool(said[1])}
     assert different == {}
     assert sum(1 for reason, _ in verdicts.values() if reason) > 40
@@ -161,8 +161,9 @@ def test_the_letters_of_names_are_those_of_the_parser() -> None:
         assert not parse("\n".join(f"let {before}{char} = 1" for char in good)).root_node.has_error
         bad = set(letters).difference(good)
         assert len(bad) > 5_000
-        some = sorted(bad)[:: 1 if TRIES_ALL else 4]
-        assert [char for char in some if not parse(f"let {before}{char} = 1").root_node.has_error] == []
+        assert [
+            char for char in some(sorted(bad)) if not parse(f"let {before}{char} = 1").root_node.has_error
+        ] == []
 
 
 # --- Words ----------------------------------------------------------------------------------------
@@ -229,7 +230,7 @@ NODES: dict[type[ast.Node], str] = {
 def test_spans_are_those_of_the_parser() -> None:
     seen = Counter[str]()
     every = {**whole_programs(), **specified()}
-    for place, text in [*every.items()][:: 1 if TRIES_ALL else 3]:
+    for place, text in some([*every.items()], 3):
         if has_signed_lines(text):
             continue
         ends = [0]

@@ -17,11 +17,11 @@ from shapely.ops import unary_union
 from aidl_lang import Model
 from aidl_lang.export.job import Options
 from tests import compiled
-from tests.amount import TRIES_ALL
+from tests.amount import TRIES_ALL, some
 from tests.export import readers
 from tests.export.readers import read_meshes
 
-EXAMPLES = [path.stem for path in compiled.EXAMPLES][:: 1 if TRIES_ALL else 2]
+EXAMPLES = some([path.stem for path in compiled.EXAMPLES], 2)
 
 
 @cache

@@ -21,7 +21,7 @@ from aidl_lang.common.render.terminal import render
 from aidl_lang.common.source import SourceFile
 from aidl_lang.syntax import ast
 from aidl_lang.tools.reference.collect import Entry, reference
-from tests.amount import TRIES_ALL, tried
+from tests.amount import TRIES_ALL, some, tried
 from tests.fuzz.calls import CALLABLES, Writer
 
 LONGEST = 20.0
@@ -83,7 +83,7 @@ def test_no_call_breaks_the_compiler(name: str) -> None:
 
 
 SHAPES = [entry for entry in reference().entries.values() if entry.sort == "shape" and entry.doc.example]
-SHAPES = SHAPES if TRIES_ALL else SHAPES[::4]
+SHAPES = some(SHAPES)
 
 
 @pytest.mark.parametrize("shape", SHAPES, ids=lambda shape: shape.name)
