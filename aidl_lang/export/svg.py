@@ -74,9 +74,6 @@ class _StandIn(ModuleType):
 
 # --- SVG path data from exact pieces. Coordinates turn upside down: SVG counts y downwards.
 
-_HALF = 1e-8
-"""Radians by which a half turn may be off after solving; to take it for the other half moves nothing."""
-
 
 def xy(p: Vec) -> str:
     return f"{fixed(p[0])} {fixed(-p[1])}"
@@ -111,12 +108,16 @@ def open_path(pieces: Sequence[Piece]) -> str:
 
 
 def _whole(piece: Piece, clockwise: bool) -> str:
-    """Returns a closed curve as two halves, since an `A` that ends where it starts draws nothing."""
+    """Returns a closed curve in parts, since an `A` that ends where it starts draws nothing."""
     assert isinstance(piece, Circle | Ellipse)
-    start, middle = xy(piece.point(0.0)), xy(piece.point(0.5))
-    flag = int(clockwise)
-    radii = _radii(piece)
-    return f"M{start}A{radii} 0 {flag} {middle}A{radii} 0 {flag} {start}Z"
+    if isinstance(piece, Circle):  # written so that its halves end a diameter apart, to the last digit
+        x, y, radius = (round(v, 6) for v in (*piece.center, piece.radius))
+        piece, count = Circle((x, y), radius), 2
+    else:
+        count = 4
+    stops = [xy(piece.point(k / count)) for k in range(count)]
+    way = stops[:0:-1] if clockwise else stops[1:]
+    return "M" + f"A{_radii(piece)} 0 {int(clockwise)} ".join([stops[0], *way, stops[0]]) + "Z"
 
 
 def _radii(piece: Arc | Circle | Ellipse | EllipseArc) -> str:
@@ -133,12 +134,11 @@ def _segment(piece: Piece) -> str:
         return f"C{xy(piece.p1)} {xy(piece.p2)} {xy(piece.p3)}"
     assert isinstance(piece, Arc | EllipseArc)
     flag = int(piece.sweep < 0)
-    if abs(piece.sweep) > 1.9 * math.pi:
-        # Nearly full turns lose their direction in rounding: go by way of the middle.
+    turn = abs(piece.sweep)
+    if abs(turn - math.pi) < 0.2 or turn > 1.9 * math.pi:
+        # How half a turn bends and where a whole one leads is lost in rounding: go by way of the middle.
         return f"A{_radii(piece)} 0 {flag} {xy(piece.point(0.5))}A{_radii(piece)} 0 {flag} {xy(piece.end)}"
-    # Of two equal halves no machine says otherwise than another.
-    is_large = abs(piece.sweep) > math.pi + _HALF
-    return f"A{_radii(piece)} {int(is_large)} {flag} {xy(piece.end)}"
+    return f"A{_radii(piece)} {int(turn > math.pi)} {flag} {xy(piece.end)}"
 
 
 FONT = "DejaVu Sans, Verdana, Arial, sans-serif"

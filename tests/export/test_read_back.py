@@ -61,6 +61,23 @@ def test_svg(name: str):
         agree(body, told[path], margin, 2e-6)
 
 
+@pytest.mark.parametrize(
+    "shape",
+    [
+        "circle((0.12345678, 7.7654321), 20.1234567)",
+        "ellipse((0.12345678, 7.7654321), 40.1234567, 20.7654321, angle: 17.3deg)",
+        "slot((0.12345678, 7.7654321), (33.3333333, 41.4141414), 20.1234567)",
+        "path((0, 0), line_to(40, 0.3), arc_to((0.12345678, 0.4), 19.94), close())",
+    ],
+)
+def test_half_turns_bend_as_far_as_they_should_in_svg(shape: str):
+    """A digit more or less at both ends of half a turn would move its middle by thousandths."""
+    model = compiled.model(f"solid part {{ outline = {shape} }}")
+    ((_, found),) = readers.read_svg(model.export(".svg")).items()
+    told = json.loads(model.to_json())["regions"]["part"]
+    assert abs(found.area - told["area"]) < 1e-6 * told["perimeter"]
+
+
 @pytest.mark.parametrize("name", EXAMPLES)
 @pytest.mark.parametrize(("kind", "tolerance"), [("splines", 1e-8), ("arcs", 0.01)])
 def test_dxf(name: str, kind: str, tolerance: float):

@@ -486,7 +486,8 @@ def rebuilt(part: Part, view: View) -> tuple[float, list[str]]:
     """How far the part that was made from a sheet is off, and the dimensions that it did not need."""
     said = [(group, [e for of in group for e in part.said(of)]) for group in view.wanted]
     table = [e for hole in view.holes for e in part.placed(hole.circle, (hole.x, hole.y), view.datum)]
-    # The sizes of an outline that is as in the file tell how large to make it.
+    # The sizes of an outline that is as in the file tell how large to make it, and where it ends.
+    of_file = [e for group, own in said if part.is_of_file(group[0], own) for e in own]
     needed = [
         e
         for group, own in said
@@ -496,7 +497,7 @@ def rebuilt(part: Part, view: View) -> tuple[float, list[str]]:
     equations = [*part.seen, *part.held(), *table, *needed]
     truth = np.array(part.truth)
     shake = np.random.default_rng(len(truth)).uniform(-1, 1, len(truth))
-    found = solved(equations, truth + SHAKE * part.size * shake)
+    found = solved([*equations, *of_file], truth + SHAKE * part.size * shake)
     off = float(np.abs(found - truth).max(initial=0.0)) / part.size
     rows = matrix(equations, truth)[0]
     whole = rank(rows)
