@@ -155,7 +155,7 @@ def test_what_is_cut_is_worked_out_once_for_all_files() -> None:
     assert result.drawing is not None
     job = Job(result.model, result.drawing, options=Options(kerf=0.2, sheet=(600, 400)))
     exporter = Exporter(job, lambda done, count: told.append((done, count)))
-    first, *others = (exporter.write(suffix).data for suffix in (".svg", ".pdf", ".dxf", ".svg"))
+    first, *others = (exporter(suffix).data for suffix in (".svg", ".pdf", ".dxf", ".svg"))
     count = len(result.drawing.regions)
     assert told == [(k, count) for k in range(count + 1)]
     assert others[-1] == first

@@ -18,6 +18,7 @@ import aidl_lang
 from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix, Label
 from aidl_lang.common.prose import significant
 from aidl_lang.common.source import SourceFile, Span
+from aidl_lang.export.job import Job, Options
 from aidl_lang.export.json import to_dict, to_json
 from aidl_lang.geometry.curves import Bezier, Ellipse, Line
 from aidl_lang.geometry.drawing import draw
@@ -65,7 +66,8 @@ def test_the_document_follows_its_schema():
     place = Diagnostic(
         "E0101", "wrong", SPAN, "here", (Label(SPAN, "there"),), ("do",), Fix("mend", (Edit(SPAN, "x"),))
     )
-    document = json.loads(to_json(m, drawing, [*found.everything(), place], {"solve": 0.25}))
+    options = Options(timings={"solve": 0.25})
+    document = json.loads(to_json(Job(m, drawing, lambda: [*found.everything(), place], options)).data)
     jsonschema.Draft202012Validator.check_schema(SCHEMA)
     jsonschema.validate(document, SCHEMA)
     assert document["timings"] == {"solve": 0.25}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import field, replace
+from dataclasses import asdict, field, replace
 from functools import cached_property
 from typing import Literal, TypeAlias
 
@@ -346,7 +346,7 @@ def _structure(s: StructureChange) -> Json:
     entry: Json = {"path": s.path, "kind": s.kind, "change": s.sort}
     entry |= _went(s.was, s.move)
     fields = {"sizes": s.sizes, "params": s.params, "settings": s.settings}
-    entry |= {name: _fields(found) for name, found in fields.items() if found}
+    entry |= {name: found for name, found in fields.items() if found}
     if s.geometry:
         entry["geometry"] = [_geometry(g) for g in s.geometry]
     return entry
@@ -355,7 +355,7 @@ def _structure(s: StructureChange) -> Json:
 def _geometry(g: GeometryChange) -> Json:
     entry: Json = {"name": g.name, "type": g.type, "change": g.sort} | _went(g.was, g.move)
     if g.fields:
-        entry["fields"] = _fields(g.fields)
+        entry["fields"] = g.fields
     if g.is_outline_changed:
         entry["outline"] = "changed"
     return entry
@@ -364,12 +364,8 @@ def _geometry(g: GeometryChange) -> Json:
 def _went(was: str | None, move: Move | None) -> Json:
     entry: Json = {} if was is None else {"was": was}
     if move is not None:
-        entry["move"] = {"dx": move.dx, "dy": move.dy, "turn": move.turn, "mirrored": move.mirrored}
+        entry["move"] = asdict(move)
     return entry
-
-
-def _fields(fields: Fields) -> Mapping[str, list[object]]:
-    return {name: list(pair) for name, pair in fields.items()}
 
 
 def _lie(pair: Contact | None) -> Json | None:
