@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 from aidl_lang.common.diagnostics import Diagnostic
@@ -20,19 +20,13 @@ from aidl_lang.geometry.boolean import Contact
 from aidl_lang.geometry.curves import KINDS
 from aidl_lang.geometry.drawing import Drawing
 from aidl_lang.geometry.region import Loop, Measures, Region
-from aidl_lang.geometry.solved import (
-    Box,
-    Finish,
-    Mobility,
-    SolvedGeometry,
-    SolvedModel,
-    SolvedStructure,
-    described,
-)
+from aidl_lang.geometry.solved import Box, Mobility, SolvedGeometry, SolvedModel, SolvedStructure, described
 
 VERSION = 1
 _NUMBERS = re.compile(r"\[\n\s*[-+.\deE]+(?:,\n\s*[-+.\deE]+)*\n\s*\]")
 _POLYGONS = re.compile(r'(?<="coordinates": )\d+')
+_FINISHES = {"fillet": ("radius",), "chamfer": ("size", "second")}
+"""Names of the sizes of finished corners."""
 Json = dict[str, Any]
 
 TOLERANCE = 1e-3
@@ -124,18 +118,16 @@ def _structure(s: SolvedStructure, mobility: Mobility) -> Json:
     if attributes := {name: values for name, values in s.attributes.items() if name != "orientation"}:
         entry["attributes"] = attributes
     if s.finishes:
-        entry["finishes"] = [finish for f in s.finishes for finish in _finishes(f)]
+        entry["finishes"] = [
+            {"kind": f.kind, "at": at} | dict(zip(_FINISHES[f.kind], f.sizes, strict=False))
+            for f in s.finishes
+            for at in f.corners
+        ]
     if s.is_empty:
         entry["empty"] = True
     if s.doc:
         entry["doc"] = s.doc
     return entry
-
-
-def _finishes(f: Finish) -> Iterator[Json]:
-    names = ("radius",) if f.kind == "fillet" else ("size", "second")
-    for at in f.corners:
-        yield {"kind": f.kind, "at": at} | dict(zip(names, f.sizes, strict=False))
 
 
 def _box(box: Box) -> Json:

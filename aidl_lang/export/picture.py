@@ -15,23 +15,7 @@ from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
 from aidl_lang.export import marks
 from aidl_lang.export.job import ExportError, Job
-from aidl_lang.export.marks import (
-    LETTERS,
-    Area,
-    Curves,
-    Dot,
-    Frame,
-    Gradient,
-    Group,
-    Ink,
-    Mark,
-    Picture,
-    Stop,
-    Text,
-    corners,
-    themed,
-    widened,
-)
+from aidl_lang.export.marks import Area, Curves, Gradient, Group, Ink, Mark, Picture, Text, corners, widened
 from aidl_lang.export.overlay import explain, labels
 from aidl_lang.geometry.boolean import united, without
 from aidl_lang.geometry.curves import Bounds, Line, Piece, Vec, larger_side, union_bounds
@@ -177,13 +161,13 @@ class _Shape:
             case Curves():
                 self._lines = [piece_points(piece, DEVIATION) for piece in mark.pieces]
                 air = mark.ink.width / 2
-            case Frame():
+            case marks.Frame():
                 self._lines = [_outline(mark.box)]
                 air = mark.width / 2
             case Text():
                 self._lines = [_outline(mark.box)]
                 self._filled = self._lines
-            case Dot(at, radius):
+            case marks.Dot(at, radius):
                 self._lines = [np.array([at, at])]
                 air = radius
         self._air = air + DEVIATION
@@ -233,7 +217,7 @@ _OVER = ":over"
 
 def picture(job: Job) -> Picture:
     """Returns the drawing as a picture by the options."""
-    return themed(_whole(job) if job.options.sheet is None else _sheet(job), job.options.theme)
+    return marks.themed(_whole(job) if job.options.sheet is None else _sheet(job), job.options.theme)
 
 
 def _sheet(job: Job) -> Picture:
@@ -399,7 +383,7 @@ def _strokes(stroke: Stroke, size: float, fills: Mapping[str, str]) -> Iterator[
         yield from _filled(Region(stroke.faces), style, color, size, marks.AREA, stroke.whole)
         return
     if stroke.faces:
-        yield from (Area(face, color, None, LETTERS, _opacity(style)) for face in stroke.faces)
+        yield from (Area(face, color, None, marks.LETTERS, _opacity(style)) for face in stroke.faces)
         return
     ink = replace(_line(style, color, STROKE_WIDTH, size), opacity=_opacity(style))
     yield Curves(stroke.pieces, ink)
@@ -479,12 +463,12 @@ _STEPS = np.linspace(0.0, 1.0, 9)
 
 def gradient_of(shade: Shade, color: str, outline: Sequence[Piece]) -> Gradient:
     """Returns the fill of a colour in what has an outline, of which some may be hidden."""
-    stops = tuple(Stop(share, _toned(color, tone)) for share, tone in _LIGHT.get(shade.kind, ()))
+    stops = tuple(marks.Stop(share, _toned(color, tone)) for share, tone in _LIGHT.get(shade.kind, ()))
     left, bottom, right, top = union_bounds([piece.box for piece in outline])
     width, height = right - left, top - bottom
     if shade.way is None:
         center = (left + width / 2, bottom + height / 2)
-        fading = tuple(Stop(share, color, opacity) for share, opacity in _FADING)
+        fading = tuple(marks.Stop(share, color, opacity) for share, opacity in _FADING)
         return Gradient(center, center, fading, width / 2, height / width)
     if shade.kind == "ball":
         spot = (left + _SPOT[0] * width, bottom + _SPOT[1] * height)
@@ -496,9 +480,9 @@ def gradient_of(shade: Shade, color: str, outline: Sequence[Piece]) -> Gradient:
     start, end = (middle + (reach - middle @ ways) * ways for reach in (along.min(), along.max()))
     other = css_color([shade.kind])
     if shade.kind == "fade":
-        stops = (Stop(0.0, color), Stop(1.0, color, 0.0))
+        stops = (marks.Stop(0.0, color), marks.Stop(1.0, color, 0.0))
     elif other is not None:
-        stops = (Stop(0.0, color), Stop(1.0, other))
+        stops = (marks.Stop(0.0, color), marks.Stop(1.0, other))
     return Gradient((float(start[0]), float(start[1])), (float(end[0]), float(end[1])), stops)
 
 

@@ -11,7 +11,7 @@ from xml.parsers import expat
 
 from fontTools.misc.transform import Identity, Offset, Scale, Transform
 
-from aidl_lang.common.drawings import TURN, Bow, DrawingError, Stroke, bow
+from aidl_lang.common.drawings import Bow, DrawingError, Stroke, bow
 from aidl_lang.common.font_files import Vec, quadratic
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
@@ -297,9 +297,9 @@ def _arc(start: Vec, end: Vec, rx: float, ry: float, rotation: float, large: boo
         height = -height
     mx, my = (x0 + x1) / 2 - height * dy, (y0 + y1) / 2 + height * dx
     first = math.atan2(y0 - my, x0 - mx)
-    sweep = (math.atan2(y1 - my, x1 - mx) - first) % TURN
+    sweep = (math.atan2(y1 - my, x1 - mx) - first) % math.tau
     if not positive:
-        sweep -= TURN
+        sweep -= math.tau
     u, v = (rx * c, rx * s), (-ry * s, ry * c)
     center = c * mx * rx - s * my * ry, s * mx * rx + c * my * ry
     return Bow(center, u, v, first, sweep, start, end)
@@ -351,7 +351,7 @@ def _radii(node: Node, page: tuple[float, float]) -> tuple[float, float]:
     return a, b
 
 
-_QUARTER = TURN / 4
+_QUARTER = math.tau / 4
 
 
 def _rectangle(x: float, y: float, width: float, height: float, rx: float, ry: float) -> Iterator[Stroke]:

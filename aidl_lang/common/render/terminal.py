@@ -223,12 +223,11 @@ def _place(span: Span | None) -> dict[str, Any]:
 
 
 def _fix(fix: Fix) -> dict[str, Any]:
-    edits = (
-        {**_place(span), "start": span.start, "end": span.end, "replacement": edit.replacement}
-        for edit in fix.edits
-        for span in [edit.span]
-    )
-    return {"title": fix.title, "sure": fix.is_sure, "edits": list(edits)}
+    edits = [
+        {**_place(e.span), "start": e.span.start, "end": e.span.end, "replacement": e.replacement}
+        for e in fix.edits
+    ]
+    return {"title": fix.title, "sure": fix.is_sure, "edits": edits}
 
 
 # --- Diagnostics for a language model: short, without pictures made of characters, the fix as text to write.

@@ -235,11 +235,8 @@ def _nearest(
 
 def _form(s: SolvedStructure) -> object:
     """Returns a key that is equal for structures that differ only in name and place."""
-    return (
-        s.kind,
-        tuple((g.name, g.type) for g in s.geometry),
-        tuple((c.name, _form(c)) for c in s.structures),
-    )
+    inner = tuple((c.name, _form(c)) for c in s.structures)
+    return s.kind, tuple((g.name, g.type) for g in s.geometry), inner
 
 
 def _form_of_geometry(g: SolvedGeometry) -> object:

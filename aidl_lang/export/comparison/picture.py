@@ -11,21 +11,9 @@ from collections.abc import Iterable, Iterator, Sequence
 
 import numpy as np
 
+from aidl_lang.export import marks
 from aidl_lang.export.comparison.changes import Comparison, StructureChange, Version
-from aidl_lang.export.marks import (
-    Area,
-    Curves,
-    Frame,
-    Group,
-    Ink,
-    Mark,
-    Picture,
-    Text,
-    arrowhead,
-    corners,
-    polygon,
-    widened,
-)
+from aidl_lang.export.marks import Area, Curves, Group, Ink, Mark, Picture, Text, corners, polygon, widened
 from aidl_lang.geometry.curves import Bounds, Line, Piece, Vec, larger_side, union_bounds
 from aidl_lang.geometry.drawing import Stroke
 from aidl_lang.geometry.network import Network, with_finer_chords
@@ -120,7 +108,7 @@ def _outlined(name: str, version: Version, shared: set[Stroke], size: float) -> 
     for stroke in version.drawing.strokes:
         yield Curves(stroke.pieces, _ink("both", size) if stroke in shared else ink, stroke.role)
     for plan in version.drawing.plans:
-        yield Frame(plan.box, ink.color, ink.width, ink.dash[0] if ink.dash else 0.0)
+        yield marks.Frame(plan.box, ink.color, ink.width, ink.dash[0] if ink.dash else 0.0)
 
 
 def _shared_strokes(comparison: Comparison) -> set[Stroke]:
@@ -165,7 +153,7 @@ def _arrow(at: Vec, to: Vec, size: float) -> Iterator[Mark]:
     x, y = (to[0] - at[0]) / length, (to[1] - at[1]) / length
     ink = Ink(INKS["after"], LINE * size, is_round=True)
     yield Curves((Line(at, (to[0] - head * x, to[1] - head * y)),), ink, "move")
-    yield Area(arrowhead(to, (x, y), head, 0.7 * head), ink.color, None, "move")
+    yield Area(marks.arrowhead(to, (x, y), head, 0.7 * head), ink.color, None, "move")
 
 
 def _legend(regions: dict[str, Region], box: Bounds, size: float) -> tuple[tuple[Mark, ...], Bounds]:

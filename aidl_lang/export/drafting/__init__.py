@@ -11,26 +11,18 @@ from aidl_lang.common.prose import fixed
 from aidl_lang.common.records import record
 from aidl_lang.export.dimension_marks import HEIGHT, Pen
 from aidl_lang.export.dimensioning import Callout, dimensioned_to_scale
+from aidl_lang.export.drafting import tables
 from aidl_lang.export.drafting.contents import Content, View, contents
 from aidl_lang.export.drafting.tables import (
     BLACK,
     CAPITAL,
     NARROW,
-    SCALES,
     SMALL,
-    STANDARDS,
-    TITLE_HEIGHT,
     WIDE,
     WIDTH,
     Paper,
     Standard,
     Table,
-    outline,
-    papers,
-    scale_text,
-    title_block,
-    width_of,
-    written,
 )
 from aidl_lang.export.job import ExportError, Job
 from aidl_lang.export.marks import Area, Curves, Group, Ink, Mark, Picture, Placing, Text, corners, widened
@@ -99,8 +91,8 @@ def drawn_view(view: View, factor: float, digits: float) -> DrawnView:
     placed = [placing.group(replace(g, marks=tuple(map(_black, g.marks)))) for g in groups if g.marks]
     width, height = factor * (box[2] - box[0]), factor * (box[3] - box[1]) + bottom
     if words:
-        width = max(width, width_of(". ".join(words), SMALL))
-        label = written(". ".join(words), (width / 2, 0.5), SMALL, "middle")
+        width = max(width, tables.width_of(". ".join(words), SMALL))
+        label = tables.written(". ".join(words), (width / 2, 0.5), SMALL, "middle")
         placed.append(Group("label", (label,), {"class": "label"}))
     return DrawnView(width, height, tuple(placed), left)
 
@@ -234,7 +226,7 @@ def drafted(job: Job, draft: Draft) -> list[Picture]:
     if not job.drawing.bodies and not job.drawing.strokes:
         raise ExportError("E0970", "nothing is drawn, so there is nothing to put on a sheet")
     sheets = contents(job.model, job.drawing)
-    standard = STANDARDS[draft.standard]
+    standard = tables.STANDARDS[draft.standard]
     pages = []
     for number, content in enumerate(sheets, 1):
         laid = _laid(content, draft, standard)
@@ -245,7 +237,7 @@ def drafted(job: Job, draft: Draft) -> list[Picture]:
 
 def _laid(content: Content, draft: Draft, standard: Standard) -> _Laid:
     """Returns the sheet on the smallest paper, at the largest scale, that hold everything."""
-    choices = list(papers(standard, draft.paper, draft.is_landscape))
+    choices = list(tables.papers(standard, draft.paper, draft.is_landscape))
     is_crowded = max(len(view.wanted) for view in content.views) > _MANY
     best: _Laid | None = None
     for name, ways in groupby(choices, key=lambda paper: paper.name):
@@ -258,7 +250,7 @@ def _laid(content: Content, draft: Draft, standard: Standard) -> _Laid:
             return best
     if best is None:
         where = "any paper" if draft.paper is None else f"{choices[0].label} paper"
-        at = f" at {scale_text(draft.scale)}" if draft.scale is not None else ""
+        at = f" at {tables.scale_text(draft.scale)}" if draft.scale is not None else ""
         message = f"`{content.subject.path}` does not fit on {where}{at} with its dimensions"
         raise ExportError("E0970", message, "leave out `--scale` and `--paper` to have them chosen")
     return best
@@ -270,7 +262,7 @@ def _fitted(content: Content, draft: Draft, paper: Paper) -> _Laid | None:
     sizes = [
         (v.drawing.box[2] - v.drawing.box[0], v.drawing.box[3] - v.drawing.box[1]) for v in content.views
     ]
-    for scale in (draft.scale,) if draft.scale is not None else SCALES:
+    for scale in (draft.scale,) if draft.scale is not None else tables.SCALES:
         factor = _factor(scale)
         if draft.scale is None and factor > _LARGEST:
             continue
@@ -291,7 +283,7 @@ def _factor(scale: Scale) -> float:
 def _rooms(content: Content, paper: Paper) -> Iterator[Bounds]:
     """Yields the free parts of a sheet: above the title block and the tables on it, and beside them."""
     left, bottom, right, top = paper.frame
-    stack = TITLE_HEIGHT + sum(table.height for table in _tables(content))
+    stack = tables.TITLE_HEIGHT + sum(table.height for table in _tables(content))
     if top - bottom - stack > 2 * _AIR:
         yield left + _AIR, bottom + stack + _AIR, right - _AIR, top - _AIR
     if right - left - WIDTH > 2 * _AIR:
@@ -356,7 +348,7 @@ def _title(job: Job, content: Content, draft: Draft, laid: _Laid, sheet: str) ->
         "date": draft.date,
         "material": "see list" if content.items else content.style.material or "",
         "thickness": "see list" if content.items else thickness,
-        "scale": scale_text(laid.scale),
+        "scale": tables.scale_text(laid.scale),
         "paper": laid.paper.label,
         "sheet": sheet,
         "unit": "mm, degrees",
@@ -377,12 +369,12 @@ def _plain(name: str) -> str:
 
 def _page(content: Content, laid: _Laid, title: Mapping[str, str], standard: Standard) -> Picture:
     _, bottom, right, _ = laid.paper.frame
-    frame = outline(*corners(laid.paper.frame), width=2 * WIDE, role="frame")
+    frame = tables.outline(*corners(laid.paper.frame), width=2 * WIDE, role="frame")
     groups = [Group("frame", (frame,), {"class": "frame"})]
     for number, (corner, view) in enumerate(laid.views, 1):
         groups += view.at(corner, number)
-    groups.append(title_block(title, right - WIDTH, bottom, standard.is_first_angle))
-    level = bottom + TITLE_HEIGHT
+    groups.append(tables.title_block(title, right - WIDTH, bottom, standard.is_first_angle))
+    level = bottom + tables.TITLE_HEIGHT
     for table in _tables(content):
         groups.append(table.group(right - WIDTH, level))
         level += table.height
