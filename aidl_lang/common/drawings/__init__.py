@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import field, replace
 from functools import cached_property, lru_cache
@@ -273,7 +274,7 @@ class Collector:
 
     what: str
     elements: list[Element] = field(default_factory=list)
-    left_out: dict[str, int] = field(default_factory=dict)
+    left_out: Counter[str] = field(default_factory=Counter)
     curves: int = 0
     numbers: int = 0
 
@@ -308,9 +309,6 @@ class Collector:
         if self.curves > MOST_CURVES or self.numbers > MOST_NUMBERS:
             hint = "simplify it in the program that drew it, or export fewer of its layers"
             raise DrawingError("E0363", f"`{self.what}` has more than {MOST_CURVES:,} curves", hint)
-
-    def leave_out(self, kind: str) -> None:
-        self.left_out[kind] = self.left_out.get(kind, 0) + 1
 
 
 # --- Reading of a drawing file, by the suffix of its name, and the names in it made names of AIDL.

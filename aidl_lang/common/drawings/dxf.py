@@ -117,7 +117,7 @@ class _Walk:
             if layer == "0" and around:
                 layer = around
             if entity.dxf.get("invisible", 0) or layer.lower() in self.hidden:
-                self.found.leave_out("hidden entity")
+                self.found.left_out["hidden entity"] += 1
             elif entity.dxftype() == "INSERT":
                 self._insert(entity, blocks, layer)
             else:
@@ -133,7 +133,7 @@ class _Walk:
             message = f"`{self.name}` is refused: its blocks stand in more than {_MOST_INSERTS:,} places"
             raise DrawingError("E0363", message, "export fewer of its layers, or simplify it")
         if entity.block() is None:
-            self.found.leave_out("dangling block reference")
+            self.found.left_out["dangling block reference"] += 1
             return
         if entity.mcount > 1:
             for one in entity.multi_insert():
@@ -146,7 +146,7 @@ class _Walk:
         strokes = list(self._strokes(kind, entity))
         if not strokes:
             if kind not in _READ or kind == "POLYLINE":
-                self.found.leave_out(_NAMES.get(kind, f"`{kind[:20]}` object"))
+                self.found.left_out[_NAMES.get(kind, f"`{kind[:20]}` object")] += 1
             return
         strokes = [mapped(s, Scale(self.unit or 1.0)) for s in strokes]
         engraving = _engraving(entity)

@@ -124,7 +124,7 @@ class _Walk:
         if style.get("display") == "none" or (self.is_own and explains):
             return
         if any(style.get(way, "none") != "none" for way in ("clip-path", "mask")):
-            self.found.leave_out("clipped or masked shape")
+            self.found.left_out["clipped or masked shape"] += 1
         try:
             matrix = place.matrix.transform(transform(node.attributes.get("transform", "")))
         except (ValueMistake, ArithmeticError):
@@ -141,9 +141,9 @@ class _Walk:
         elif node.tag in SHAPES:
             self._shape(node, place)
         elif node.tag in _OTHERS:
-            self.found.leave_out(_OTHERS[node.tag])
+            self.found.left_out[_OTHERS[node.tag]] += 1
         else:
-            self.found.leave_out(f"`{node.tag[:20]}` element")
+            self.found.left_out[f"`{node.tag[:20]}` element"] += 1
 
     def _shape(self, node: Node, place: _Place) -> None:
         if place.style.get("visibility", "visible") in ("hidden", "collapse"):
@@ -172,7 +172,7 @@ class _Walk:
     def _use(self, node: Node, place: _Place) -> None:
         target = self.by_id.get(node.attributes.get("href", "").strip().removeprefix("#"))
         if target is None:
-            self.found.leave_out("dangling `use` element")
+            self.found.left_out["dangling `use` element"] += 1
             return
         if target in place.around or len(place.around) > _DEEPEST or target is self.root:
             self.circular.append(_called(node))

@@ -152,12 +152,18 @@ class Pose:
 
 def pose_of(before: SolvedGeometry, after: SolvedGeometry, tolerance: float) -> Pose:
     """Returns the pose of two geometries; not congruent if they differ in kind, in parts or in radii."""
-    places: list[tuple[Vec, Vec]] = []
-    axes: list[tuple[float, float]] = []
+    both = list(zip(before.walk(), after.walk(), strict=False))
     centers = [g.values.get("center") for g in (before, after)]
     known = np.array(centers, dtype=np.float64).reshape(2, 1, 2) if all(centers) else None
-    if not _gather(before, after, tolerance, places, axes):
+    if not all(_are_congruent(a, b, tolerance) for a, b in both):
         return Pose(tolerance, congruent=False, centers=known)
+    places = [pair for a, b in both for pair in zip(_places(a), _places(b), strict=True)]
+    axes = [
+        (math.degrees(a.curve.angle), math.degrees(b.curve.angle))
+        for a, b in both
+        if isinstance(a.curve, Ellipse) and isinstance(b.curve, Ellipse)
+        if abs(a.curve.rx - a.curve.ry) > tolerance
+    ]
     return Pose(
         tolerance,
         np.array(places, dtype=np.float64).reshape(-1, 2, 2).transpose(1, 0, 2),
@@ -166,30 +172,13 @@ def pose_of(before: SolvedGeometry, after: SolvedGeometry, tolerance: float) -> 
     )
 
 
-def _gather(
-    a: SolvedGeometry,
-    b: SolvedGeometry,
-    tolerance: float,
-    places: list[tuple[Vec, Vec]],
-    axes: list[tuple[float, float]],
-) -> bool:
-    """Collects places and axes; returns False as soon as the two differ."""
+def _are_congruent(a: SolvedGeometry, b: SolvedGeometry, tolerance: float) -> bool:
+    """Tells whether two geometries, their parts aside, agree in kind, in parts and in radii."""
     if a.type != b.type or [p.name for p in a.parts] != [p.name for p in b.parts]:
         return False
-    first, last = _places(a), _places(b)
-    if type(a.curve) is not type(b.curve) or len(first) != len(last):
+    if type(a.curve) is not type(b.curve) or len(_places(a)) != len(_places(b)):
         return False
-    radii = zip(_radii(a), _radii(b), strict=True)
-    if any(not abs(r - s) <= tolerance for r, s in radii):
-        return False
-    places += zip(first, last, strict=True)
-    if (
-        isinstance(a.curve, Ellipse)
-        and isinstance(b.curve, Ellipse)
-        and abs(a.curve.rx - a.curve.ry) > tolerance
-    ):
-        axes.append((math.degrees(a.curve.angle), math.degrees(b.curve.angle)))
-    return all(_gather(p, q, tolerance, places, axes) for p, q in zip(a.parts, b.parts, strict=True))
+    return all(abs(r - s) <= tolerance for r, s in zip(_radii(a), _radii(b), strict=True))
 
 
 def _places(g: SolvedGeometry) -> list[Vec]:
@@ -312,7 +301,7 @@ class Comparison:
         return same and not (self.structures or self.contacts or self.freed or self.held)
 
     def __str__(self) -> str:
-        from aidl_lang.export.comparison.wording import text
+        from aidl_lang.export.comparison.showing import text
 
         return text(self)
 

@@ -21,7 +21,6 @@ from aidl_lang.export.drafting.tables import (
     WIDE,
     WIDTH,
     Paper,
-    Standard,
     Table,
 )
 from aidl_lang.export.job import ExportError, Job
@@ -235,7 +234,7 @@ def drafted(job: Job, draft: Draft) -> list[Picture]:
     return pages
 
 
-def _laid(content: Content, draft: Draft, standard: Standard) -> _Laid:
+def _laid(content: Content, draft: Draft, standard: tables.Standard) -> _Laid:
     """Returns the sheet on the smallest paper, at the largest scale, that hold everything."""
     choices = list(tables.papers(standard, draft.paper, draft.is_landscape))
     is_crowded = max(len(view.wanted) for view in content.views) > _MANY
@@ -367,7 +366,7 @@ def _plain(name: str) -> str:
     return words[:1].upper() + words[1:]
 
 
-def _page(content: Content, laid: _Laid, title: Mapping[str, str], standard: Standard) -> Picture:
+def _page(content: Content, laid: _Laid, title: Mapping[str, str], standard: tables.Standard) -> Picture:
     _, bottom, right, _ = laid.paper.frame
     frame = tables.outline(*corners(laid.paper.frame), width=2 * WIDE, role="frame")
     groups = [Group("frame", (frame,), {"class": "frame"})]
