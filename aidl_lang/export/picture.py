@@ -11,7 +11,6 @@ import numpy as np
 
 from aidl_lang.common.colors import css_color, hexadecimal, rgb
 from aidl_lang.common.prose import fixed, size_text
-from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
 from aidl_lang.export import marks
 from aidl_lang.export.job import ExportError, Job
@@ -49,31 +48,12 @@ DEVIATION = 0.05
 Size = tuple[float, float]
 
 
-@record()
-class _Row:
-    """Windows of one size along an axis: their number, their first edge and the step between them."""
-
-    count: int
-    first: float
-    step: float
-    window: float
-
-    @classmethod
-    def over(cls, low: float, high: float, window: float, overlap: float) -> _Row:
-        """Returns the fewest windows that cover the range, centred on it."""
-        step = window - overlap
-        count = max(1, math.ceil((high - low - overlap) / step - 1e-9))
-        return cls(count, (low + high - (count - 1) * step - window) / 2, step, window)
-
-    def start(self, index: int) -> float:
-        return self.first + index * self.step
-
-    def seams(self, overlap: float) -> list[float]:
-        """Returns the middles of the overlaps."""
-        return [self.start(k) + overlap / 2 for k in range(1, self.count)]
-
-    def quarters(self) -> list[float]:
-        return [self.start(k) + self.window * share for k in range(self.count) for share in (0.25, 0.75)]
+def _windows(low: float, high: float, window: float, overlap: float) -> tuple[int, Iterator[float]]:
+    """Returns the number of the fewest windows that cover a range, centred on it, and where they begin."""
+    step = window - overlap
+    count = max(1, math.ceil((high - low - overlap) / step - 1e-9))
+    first = (low + high - (count - 1) * step - window) / 2
+    return count, (first + k * step for k in range(count))
 
 
 def tiled(picture: Picture, page: Size, overlap: float = OVERLAP) -> list[Picture]:
@@ -84,25 +64,26 @@ def tiled(picture: Picture, page: Size, overlap: float = OVERLAP) -> list[Pictur
     window = page[0] - 2 * PAGE_MARGIN, page[1] - 2 * PAGE_MARGIN
     _check(page, window, overlap)
     left, bottom, right, top = picture.box
-    across = _Row.over(left, right, window[0], overlap)
-    down = _Row.over(-top, -bottom, window[1], overlap)  # rows count from the top
-    if across.count * down.count > MOST_PAGES:
-        message = f"{across.count * down.count} pages are more than {MOST_PAGES}"
+    columns, lefts = _windows(left, right, window[0], overlap)
+    rows, tops = _windows(-top, -bottom, window[1], overlap)  # rows count from the top
+    if columns * rows > MOST_PAGES:
+        message = f"{columns * rows} pages are more than {MOST_PAGES}"
         raise ExportError("E0924", message, "give a larger `--tile`")
-    crosses = [(x, -y) for x in across.seams(overlap) for y in down.quarters()]
-    crosses += [(x, -y) for x in across.quarters() for y in down.seams(overlap)]
+    xs, ys, half, shares = [*lefts], [*tops], overlap / 2, (0.25, 0.75)
+    crosses = [(x + half, -(y + window[1] * share)) for x in xs[1:] for y in ys for share in shares]
+    crosses += [(x + window[0] * share, -(y + half)) for x in xs for share in shares for y in ys[1:]]
     shapes = [[(mark, _Shape(mark)) for mark in group.marks] for group in picture.groups]
     found = []
-    for row, column in np.ndindex(down.count, across.count):
+    for row, column in np.ndindex(rows, columns):
         checkpoint()
-        x, y = across.start(column), -down.start(row)
+        x, y = xs[column], -ys[row]
         sight = (x, y - window[1], x + window[0], y)
         groups = [
             replace(group, marks=shown, clip=widened(sight, BLEED))
             for group, held in zip(picture.groups, shapes, strict=True)
             if (shown := tuple(mark for mark, shape in held if shape.meets(sight)))
         ]
-        if groups or across.count * down.count == 1:
+        if groups or columns * rows == 1:
             found.append((sight, groups, f"row {row + 1}, column {column + 1}"))
     made = []
     for k, (sight, groups, place) in enumerate(found, 1):
