@@ -113,16 +113,18 @@ def test_it_turns_as_one_where_a_constraint_asks_for_it():
     assert math.isclose(area(found), area(compiled('import "logo.svg" as logo\nsolid s { a = logo() }')))
 
 
-def test_both_of_a_width_and_a_height_are_refused():
-    found = compiled('import "logo.svg" as logo\nsolid s { a = logo(width: 3, height: 3) }')
-    assert [d.code for d in found.diagnostics if d.is_error] == ["E0311"]
-
-
-def test_a_negative_scale_is_refused():
-    found = compiled('import "logo.svg" as logo\nsolid s { a = logo(scale: -1) }')
-    assert [(d.code, d.message) for d in found.diagnostics] == [
-        ("E0515", "the scale of this drawing is -1, and sizes are never negative")
-    ]
+@pytest.mark.parametrize(
+    ("arguments", "code", "message"),
+    [
+        ("width: 3, height: 3", "E0311", ""),
+        ("scale: -1", "E0515", "the scale of this drawing is -1, and sizes are never negative"),
+    ],
+)
+def test_sizes_that_cannot_be_are_refused(arguments: str, code: str, message: str):
+    found = compiled(f'import "logo.svg" as logo\nsolid s {{ a = logo({arguments}) }}')
+    (error,) = [d for d in found.diagnostics if d.is_error]
+    assert error.code == code
+    assert error.message.startswith(message)
 
 
 @tries(16)

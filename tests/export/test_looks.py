@@ -408,46 +408,28 @@ def _brightness(attributes: str, *, frame: str = "", suffix: str = ".png") -> di
 
 
 @pytest.mark.parametrize("suffix", [".png", ".pdf"])
-def test_a_round_bar_is_lit_from_the_left(suffix: str) -> None:
-    seen = _brightness("@shade(round)", suffix=suffix)
-    assert seen["left"] > seen["middle"] > seen["right"]
-    assert seen["above"] == pytest.approx(seen["below"], abs=2)
+def test_light_and_shade_go_their_ways(suffix: str) -> None:
+    """Half of the way out of the middle, 0.3 of the square, shows 0.4 of it: 0.78 at 0.3, and 0.3 at 0.6."""
+    ways = ("@shade(round)", '@shade("white", 0deg)', "@shade(fade, 0deg)", "@shade(fade)")
+    bar, white, fading, glow = (_brightness(way, suffix=suffix) for way in ways)
+    assert bar["left"] > bar["middle"] > bar["right"]
+    assert bar["above"] == pytest.approx(bar["below"], abs=2)
+    assert white["left"] < white["middle"] < white["right"]
+    assert white["right"] > 220
+    assert fading["left"] < fading["middle"] < fading["right"]
+    assert fading["middle"] == pytest.approx((128 + 255) / 2, abs=4)
+    assert fading["above"] == pytest.approx(fading["below"], abs=2)
+    assert glow["middle"] == pytest.approx(128, abs=5)
+    assert glow["left"] == pytest.approx(255 - 127 * (0.78 - 0.48 / 3), abs=5)
+    assert glow["left"] < glow["right"] == pytest.approx(glow["below"], abs=3)
 
 
 @pytest.mark.parametrize("frame", ["", "rotated 180deg", "at (3, 4)"])
 def test_light_comes_from_one_side_however_a_part_is_turned(frame: str) -> None:
-    assert _brightness("@shade(round)", frame=frame) == pytest.approx(_brightness("@shade(round)"), abs=2)
-    assert _brightness("@shade(slope)", frame=frame) == pytest.approx(_brightness("@shade(slope)"), abs=2)
-
-
-def test_shade_goes_along_with_a_part_that_is_turned() -> None:
-    assert _brightness("@shade(round)", frame="rotated 90deg") == pytest.approx(
-        _brightness("@shade(round, 90deg)"), abs=2
-    )
-
-
-@pytest.mark.parametrize("suffix", [".png", ".pdf"])
-def test_a_fill_goes_over_into_another_colour(suffix: str) -> None:
-    seen = _brightness('@shade("white", 0deg)', suffix=suffix)
-    assert seen["left"] < seen["middle"] < seen["right"]
-    assert seen["right"] > 220
-
-
-@pytest.mark.parametrize("suffix", [".png", ".pdf"])
-def test_a_fill_fades_along_a_way(suffix: str) -> None:
-    seen = _brightness("@shade(fade, 0deg)", suffix=suffix)
-    assert seen["left"] < seen["middle"] < seen["right"]
-    assert seen["middle"] == pytest.approx((128 + 255) / 2, abs=4)
-    assert seen["above"] == pytest.approx(seen["below"], abs=2)
-
-
-@pytest.mark.parametrize("suffix", [".png", ".pdf"])
-def test_a_fill_fades_out_of_its_middle(suffix: str) -> None:
-    """Half of the way, 0.3 of the square, shows 0.4 of it: 0.78 at 0.3 and 0.3 at 0.6 of the way."""
-    seen = _brightness("@shade(fade)", suffix=suffix)
-    assert seen["middle"] == pytest.approx(128, abs=5)
-    assert seen["left"] == pytest.approx(255 - 127 * (0.78 - 0.48 / 3), abs=5)
-    assert seen["left"] < seen["right"] == pytest.approx(seen["below"], abs=3)
+    for shade in ("@shade(round)", "@shade(slope)"):
+        assert _brightness(shade, frame=frame) == pytest.approx(_brightness(shade), abs=2)
+    turned = _brightness("@shade(round)", frame="rotated 90deg")
+    assert turned == pytest.approx(_brightness("@shade(round, 90deg)"), abs=2)
 
 
 def test_what_fades_is_flat_where_its_box_is() -> None:
