@@ -43,21 +43,19 @@ class Node:
 def read(data: bytes, path: str) -> Node:
     """Returns the root of an SVG document. Raises DrawingError."""
     reader = _Reader(path)
+
+    def wrong(what: str, hint: str) -> DrawingError:
+        return DrawingError("E0362", f"`{path}` {what}", hint)
+
     try:
         reader.parser.Parse(data, True)
     except expat.ExpatError as reason:
-        what = expat.ErrorString(reason.code)
-        message = f"`{path}` is not well-formed: {what} in line {reason.lineno}"
-        hint = "save it anew as plain SVG in the program that drew it"
-        raise DrawingError("E0362", message, hint) from None
+        what = f"is not well-formed: {expat.ErrorString(reason.code)} in line {reason.lineno}"
+        raise wrong(what, "save it anew as plain SVG in the program that drew it") from None
     except (LookupError, ValueError):  # an encoding that is unknown, or takes several bytes
-        raise DrawingError(
-            "E0362", f"`{path}` is in an encoding that is not known", "save it anew as UTF-8"
-        ) from None
+        raise wrong("is in an encoding that is not known", "save it anew as UTF-8") from None
     if reader.root is None or reader.root.tag != "svg":
-        raise DrawingError(
-            "E0362", f"`{path}` is no SVG: it does not begin with an `svg` element", "export it as SVG"
-        )
+        raise wrong("is no SVG: it does not begin with an `svg` element", "export it as SVG")
     return reader.root
 
 

@@ -48,9 +48,6 @@ class GeometryPair:
     after: SolvedGeometry
     pose: Pose
 
-    def follows(self, move: Move) -> bool:
-        return self.pose.follows(move)
-
     @property
     def was(self) -> str | None:
         return self.before.name if self.before.name != self.after.name else None
@@ -82,12 +79,12 @@ class StructurePair:
     @cached_property
     def pose(self) -> Pose:
         """The pose of everything that is in both versions; valid once all pairs are found."""
-        parts = [item.pose for item in self.items]
+        parts = [item.pose for item in (*self.geometry, *self.structures)]
         return Pose.joined([*parts, *_plan(self.before, self.after, self.tolerance)], self.tolerance)
 
     @property
-    def items(self) -> list[GeometryPair | StructurePair]:
-        return [*self.geometry, *self.structures]
+    def items(self) -> list[Pose | StructurePair]:
+        return [*(g.pose for g in self.geometry), *self.structures]
 
     def follows(self, move: Move) -> bool:
         """True if most of its members moved by `move`."""
