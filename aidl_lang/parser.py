@@ -146,7 +146,6 @@ class _Reader:
         return self.automaton.accepts((",", "-"))  # commas stand among constraints alone
 
     def _begin_item(self, position: int) -> None:
-        """Ends the constraint above, as a comma does."""
         start = self.tokens[position].start
         self.automaton.feed(Token(",", "", start, start))
         self.last = self.automaton.checkpoint(position)

@@ -128,7 +128,6 @@ class _Place(threading.Thread):
             self._kill()
 
     def _given_up(self, future: Future[Any]) -> None:
-        """Ends the process if it is at a call."""
         with self._lock:
             if self._current is future:
                 self._kill()

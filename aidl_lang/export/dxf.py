@@ -93,7 +93,6 @@ class Looks:
         return {"layer": name} | own
 
     def _line(self, style: Style) -> dict[str, Any]:
-        """Returns the attributes of lines of a style; none where it asks for nothing."""
         found: dict[str, Any] = {}
         if style.width is not None and not self._is_old:
             found["lineweight"] = weight(style.width)
@@ -134,7 +133,6 @@ class Looks:
         return index | color_attributes(look.color, is_old=False) | {"lineweight": weight(look.width)}
 
     def _free(self, wanted: str) -> str:
-        """Returns a free name like the wanted one that DXF allows."""
         longest, refused, rule = _OLD if self._is_old else _NEW
         allowed = refused.sub("_", wanted).strip()[:longest] or "_"
         name, count = allowed, 1
@@ -256,7 +254,6 @@ def _add_labels(document: Any, texts: Iterable[Text], looks: Looks) -> None:
 
 
 def _set_view(document: Any, drawing: Drawing, factor: float) -> None:
-    """Sets extents, limits and a first view that show the drawing with its lengths multiplied."""
     left, bottom, right, top = (factor * side for side in drawing.box)
     space = document.modelspace()
     space.dxf.limmin, space.dxf.limmax = (left, bottom), (right, top)

@@ -195,7 +195,6 @@ class _Pen:
             self._canvas.drawPath(path, fill=is_filled, stroke=is_lined, fillMode=0)
 
     def _shade(self, path: Any, gradient: Gradient) -> None:
-        """Fills a path with a gradient, as dense as the fill is set to be."""
         shares = [stop.share for stop in gradient.stops]
         colors = [self._color(stop.color) for stop in gradient.stops]
         with self._state():

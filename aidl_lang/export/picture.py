@@ -105,7 +105,6 @@ def _check(page: Size, window: Size, overlap: float) -> None:
 
 
 def _page_marks(sight: Bounds, crosses: Sequence[Vec], overlap: float, label: str) -> Iterator[Mark]:
-    """Yields the marks that help to join the pages: corners, crosses, a label and a scale."""
     left, bottom, right, top = sight
     ink = Ink(marks.PLAN, HAIRLINE)
     ticks: list[Piece] = []

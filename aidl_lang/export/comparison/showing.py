@@ -107,7 +107,6 @@ def _ranges(numbers: list[int]) -> str:
 
 
 def _is_shift(change: StructureChange | GeometryChange) -> bool:
-    """True if a shift is the whole change."""
     move = change.move
     if move is None or move.turn or move.mirrored or change.was:
         return False

@@ -211,8 +211,6 @@ class Draft:
 
 @record()
 class _Laid:
-    """A sheet on which everything has a place."""
-
     paper: Paper
     scale: Scale
     views: tuple[tuple[Vec, DrawnView], ...]
