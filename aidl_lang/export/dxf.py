@@ -16,7 +16,7 @@ from aidl_lang.common.running import checkpoint
 from aidl_lang.common.source import Span
 from aidl_lang.export.cuts import Outline, outlines
 from aidl_lang.export.job import UNITS, Exported, Job
-from aidl_lang.export.marks import Text
+from aidl_lang.export.marks import CAPITAL, Text
 from aidl_lang.export.overlay import labels
 from aidl_lang.export.profiles import FILL, ON_PARTS, PLAIN, SCORE, Look
 from aidl_lang.geometry.arcs import as_arcs
@@ -174,8 +174,6 @@ DIGITS = 13
 """Coordinates have this many digits of the size of the drawing, past which rounding errors begin."""
 LABELS, GREY = "labels", "#808080"
 """The layer for names and numbers of parts."""
-CAPITAL = 0.73
-"""Height of capitals, by which DXF has the size of a text, relative to the size of the font."""
 TEXT_BYTES, ESCAPED = 255, 7
 """Bytes of a text in XDATA, and of a character that the file's encoding lacks."""
 PATTERN_GOES_ON = 128

@@ -88,8 +88,8 @@ def _brightness(parts: tuple[int, int, int]) -> float:
 
 # --- The marks of pictures, as data: areas, curves, texts, dots and frames. Coordinates in mm, y upwards.
 
-CHARACTER = 0.6
-"""Mean width of a character of the font, relative to its size."""
+CHARACTER, CAPITAL = 0.6, 0.73
+"""Mean width of a character of the font, and height of a capital, relative to its size."""
 ANCHORS = {"start": 0.0, "middle": -0.5, "end": -1.0}
 """Where a text begins, seen from where it is anchored, relative to its width."""
 

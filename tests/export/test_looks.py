@@ -196,12 +196,6 @@ TOLD: list[tuple[str, dict[str, object], str]] = [
     (".svg", {"cut": True}, f"`@stroke`, `@dash` and `@opacity` count for nothing in this file: {CUTS}"),
     (".stl", {}, "`@stroke`, `@dash` and `@opacity` count for nothing in this file: STL holds bare shapes"),
     (
-        ".step",
-        {},
-        "`@stroke` and `@dash` count for nothing in this file: "
-        "STEP holds shapes with their colours, and its lines no width and no areas",
-    ),
-    (
         ".3mf",
         {},
         "`@stroke` and `@dash` count for nothing in this file: "
@@ -239,6 +233,12 @@ def seen(suffix: str, program: str) -> Image.Image:
         return Image.open(io.BytesIO(written(program, suffix, pixels=1060).data)).convert("RGB")
     page = PdfDocument(written(program, suffix).data)[0]
     return page.render(scale=10 / 72 * 25.4).to_pil().convert("RGB")
+
+
+def at(image: Image.Image, x: float, y: float, wide: float = 106) -> tuple[int, int, int]:
+    """The colour at so many millimetres from the middle of a picture."""
+    scale, middle = image.width / wide, (image.width / 2, image.height / 2)
+    return image.getpixel((round(middle[0] + x * scale), round(middle[1] - y * scale)))  # type: ignore
 
 
 # --- Letters -----------------------------------------------------------------------------------------
@@ -329,27 +329,15 @@ assembly a {
 
 
 def test_gaps_lie_over_what_is_behind_and_under_what_is_in_front() -> None:
-    image = Image.open(io.BytesIO(written(HALOED, ".png", pixels=1400).data)).convert("RGB")
-    scale = image.width / (140 + 2 * 0.03 * 140)
-
-    def at(x: float, y: float) -> tuple[int, int, int]:
-        found = image.getpixel(
-            (round(image.width / 2 + (x - 20) * scale), round(image.height / 2 - y * scale))
-        )
-        assert isinstance(found, tuple)
-        return found
-
+    image = seen(".png", HALOED)
     white, blue, yellow = (255, 255, 255), (0, 0, 255), (255, 255, 0)
-    assert near(at(-46, 0), blue)
-    assert near(at(-43, 0), white)
-    assert near(at(-37.5, 0), yellow)
-    assert near(at(-32, 0), white)  # in the ring
-    assert near(at(-20, 0), blue)
-    assert near(at(-20, 15.4), yellow)  # beside what is drawn on it
-    assert near(at(16.2, 0), white)
-    assert near(at(23.8, 0), white)
-    assert near(at(14, 0), blue)
-    assert near(at(26, 0), blue)
+    for color, places in (
+        (blue, [(-46, 0), (-20, 0), (14, 0), (26, 0)]),
+        (white, [(-43, 0), (-32, 0), (16.2, 0), (23.8, 0)]),  # in the ring, too
+        (yellow, [(-37.5, 0), (-20, 15.4)]),  # beside what is drawn on it
+    ):
+        for x, y in places:
+            assert near(at(image, x - 20, y, 1.06 * 140), color), (x, y)
 
 
 SHADOWED = """
@@ -368,18 +356,14 @@ assembly a {
 
 @pytest.mark.parametrize("suffix", [".png", ".pdf"])
 def test_a_shadow_is_one_of_all_that_casts_it_and_a_veil_lies_beyond_its_body(suffix: str) -> None:
-    scale, margin, image = 10, 0.03 * 100, seen(suffix, SHADOWED)
-
-    def at(x: float, y: float) -> object:
-        return image.getpixel((round((x + 50 + margin) * scale), round((30 + margin - y) * scale)))
-
-    assert near(at(-40, 0), (0, 0, 255))
-    assert near(at(22, -28), (0, 0, 153))  # of both parts: once as dark
-    assert near(at(2, -28), (0, 0, 153))
-    assert near(at(-2, -28), (0, 0, 255))
-    assert near(at(-12, 0), (128, 0, 128))  # the glow, on the wall
-    assert near(at(-8, 0), (255, 128, 0))
-    assert near(at(12, 0), (255, 255, 0))  # in front of it
+    image = seen(suffix, SHADOWED)
+    assert near(at(image, -40, 0), (0, 0, 255))
+    assert near(at(image, 22, -28), (0, 0, 153))  # of both parts: once as dark
+    assert near(at(image, 2, -28), (0, 0, 153))
+    assert near(at(image, -2, -28), (0, 0, 255))
+    assert near(at(image, -12, 0), (128, 0, 128))  # the glow, on the wall
+    assert near(at(image, -8, 0), (255, 128, 0))
+    assert near(at(image, 12, 0), (255, 255, 0))  # in front of it
     assert "fill-opacity" not in written(SHADOWED, ".svg", theme="blueprint").data.decode()
 
 

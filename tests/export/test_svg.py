@@ -51,12 +51,6 @@ def test_groups_carry_paths_kinds_and_layers():
     assert "data-layer" not in found["part.marks"].attrib
 
 
-def test_drawings_are_stroked_on_what_holds_them():
-    svg = read(ROOT)
-    (path,) = list(svg.iter(f"{SVG}g"))[-1]
-    assert (path.attrib["fill"], path.attrib["d"]) == ("none", "M0 -25L100 -25")
-
-
 @pytest.mark.parametrize(("fill", "ink"), [("ivory", "#818179"), ("#102030", "#889098")])
 def test_strokes_that_take_the_colour_of_what_they_lie_on_are_drawn_in_another(fill: str, ink: str):
     on = structure("drawing", "on", primitive("l", Line((1, 1), (9, 9))))

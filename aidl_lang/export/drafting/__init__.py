@@ -9,20 +9,12 @@ from itertools import chain, groupby
 
 from aidl_lang.common.prose import fixed
 from aidl_lang.common.records import record
+from aidl_lang.export import marks
 from aidl_lang.export.dimension_marks import HEIGHT, Pen
 from aidl_lang.export.dimensioning import Callout, dimensioned_to_scale
 from aidl_lang.export.drafting import tables
 from aidl_lang.export.drafting.contents import Content, View, contents
-from aidl_lang.export.drafting.tables import (
-    BLACK,
-    CAPITAL,
-    NARROW,
-    SMALL,
-    WIDE,
-    WIDTH,
-    Paper,
-    Table,
-)
+from aidl_lang.export.drafting.tables import BLACK, NARROW, SMALL, WIDE, WIDTH, Paper, Table
 from aidl_lang.export.job import ExportError, Job
 from aidl_lang.export.marks import Area, Curves, Group, Ink, Mark, Picture, Placing, Text, corners, widened
 from aidl_lang.geometry.curves import Arc, Bounds, Circle, Line, Piece, Vec, union_bounds
@@ -64,7 +56,7 @@ def drawn_view(view: View, factor: float, digits: float) -> DrawnView:
     """Draws a view. `factor`: millimetres on paper for one of the part; `digits`: height of the values."""
     pen = Pen(digits / HEIGHT / factor)
     signs = tuple(
-        Text((x + reach, y + reach), hole.sign, SMALL / CAPITAL / factor, BLACK)
+        Text((x + reach, y + reach), hole.sign, SMALL / marks.CAPITAL / factor, BLACK)
         for hole in view.holes
         for (x, y), reach in [(hole.circle.center, 0.72 * hole.circle.radius + 0.8 / factor)]
     )
@@ -114,7 +106,7 @@ def _datum(view: View, factor: float) -> Iterator[Mark]:
     if view.holes:
         left, bottom, _, _ = view.drawing.box
         is_corner = abs(view.datum[0] - left) + abs(view.datum[1] - bottom) < 1e-6 * view.drawing.size
-        size = SMALL / CAPITAL / factor
+        size = SMALL / marks.CAPITAL / factor
         reach, aside = 9.0 / factor, 1.0 / factor
         for way, sign in (((1.0, 0.0), "X"), ((0.0, 1.0), "Y")):
             x, y = (left - 3 * aside, bottom - 3 * aside) if is_corner else view.datum
