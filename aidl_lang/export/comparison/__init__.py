@@ -79,7 +79,7 @@ class StructurePair:
     @cached_property
     def pose(self) -> Pose:
         """The pose of everything that is in both versions; valid once all pairs are found."""
-        parts = [item.pose for item in (*self.geometry, *self.structures)]
+        parts = [*(g.pose for g in self.geometry), *(s.pose for s in self.structures)]
         return Pose.joined([*parts, *_plan(self.before, self.after, self.tolerance)], self.tolerance)
 
     @property
