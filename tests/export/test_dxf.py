@@ -248,11 +248,16 @@ solid sign {
     }
 }
 """
-NAMES = ("sign", "gear_pair", "telephone", "finger_box")
+GEAR = """@detached solid gear {
+    rim = spur_gear(center: fixed((0, 0)), module: 2, teeth: 11)
+    hole bore { eye = ellipse(center: fixed((0, 0)), rx: 4, ry: 3) }
+}
+"""
+OWN = {"sign": SIGN, "gear": GEAR}
 
 
 def text_of(name: str) -> str:
-    return SIGN if name == "sign" else (ROOT / "examples" / f"{name}.aidl").read_text("utf-8")
+    return OWN.get(name) or (ROOT / "examples" / f"{name}.aidl").read_text("utf-8")
 
 
 def document(name: str, **options: Any) -> Document:
@@ -292,7 +297,7 @@ def test_the_sign_is_engraved_by_closed_polylines_too() -> None:
     assert len(engraved) == 9 + 1 + 1 + 1 + 2 + 1
 
 
-@pytest.mark.parametrize("name", ["sign", "gear_pair"])
+@pytest.mark.parametrize("name", OWN)
 @pytest.mark.parametrize("tolerance", [0.1, 0.01])
 def test_arcs_are_within_the_tolerance_both_ways(name: str, tolerance: float) -> None:
     """Curves of the exact file are sampled at a hundred places, an ellipse at many; arcs as finely as a
@@ -315,7 +320,7 @@ def test_arcs_are_within_the_tolerance_both_ways(name: str, tolerance: float) ->
     assert 0.2 * tolerance < worst <= 1.02 * tolerance
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", [*OWN, "telephone", "finger_box"])
 def test_outer_contours_run_counter_clockwise_and_inner_ones_clockwise(name: str) -> None:
     for entity in document(name).modelspace():
         if entity.dxf.layer not in ("solid", "hole") or entity.dxftype() == "CIRCLE":
@@ -326,7 +331,7 @@ def test_outer_contours_run_counter_clockwise_and_inner_ones_clockwise(name: str
             assert LinearRing(ring(entity)).is_ccw
 
 
-@pytest.mark.parametrize("name", ["sign", "gear_pair"])
+@pytest.mark.parametrize("name", OWN)
 def test_the_kerf_is_half_on_either_side_and_leaves_no_slivers(name: str) -> None:
     wide = list(document(name, kerf=0.15).modelspace())
     cut = [e for e in wide if e.dxf.layer in ("solid", "hole")]
@@ -350,7 +355,7 @@ def _length(piece: Any) -> float:
 
 
 def test_what_is_cut_is_worked_out_once_for_all_files() -> None:
-    result, told = compiled(text_of("gear_pair")), list[tuple[int, int]]()
+    result, told = compiled(GEAR), list[tuple[int, int]]()
     assert result.model is not None
     assert result.drawing is not None
     job = Job(result.model, result.drawing, options=Options(kerf=0.2, sheet=(600, 400)))

@@ -20,7 +20,7 @@ SVG = "{http://www.w3.org/2000/svg}"
 
 
 def read(root: SolvedStructure, *show: str) -> ElementTree.Element:
-    return ElementTree.fromstring(read(root, ".svg", show=frozenset(show)).data)
+    return ElementTree.fromstring(written(root, ".svg", show=frozenset(show)).data)
 
 
 def groups(svg: ElementTree.Element) -> dict[str, ElementTree.Element]:
