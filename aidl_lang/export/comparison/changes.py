@@ -50,10 +50,8 @@ class Move:
         return np.stack((c * x - s * y + self.dx, s * x + c * y + self.dy), axis=1)
 
     @property
-    def fixed_point(self) -> Vec | None:
-        """The point about which it turns; None for a shift or a reflection."""
-        if self.mirrored or not self.turn:
-            return None
+    def fixed_point(self) -> Vec:
+        """The point about which it turns, if that is what it does."""
         # (1 - R) p = d, and (1 - R) is 2 sin(turn/2) times a turn by (turn - 180)/2.
         half = math.radians(self.turn) / 2
         k = 1 / (2 * math.tan(half))

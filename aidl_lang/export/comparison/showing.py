@@ -221,7 +221,7 @@ def _move(move: Move, middle: Vec | None, size: float) -> str:
     if not move.turn:
         return "stayed" if not (move.dx or move.dy) else f"moved by {shift}"
     about = move.fixed_point
-    if about is None or max(abs(about[0] - at[0]), abs(about[1] - at[1])) > size:
+    if max(abs(about[0] - at[0]), abs(about[1] - at[1])) > size:
         return f"turned by {_number(move.turn)}°, its middle moved by {shift}"
     return f"turned by {_number(move.turn)}° about {_value(about)}"
 
