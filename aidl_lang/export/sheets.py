@@ -264,22 +264,10 @@ def to_csv(jobs: Sequence[Job]) -> Exported:
 
 def pages(jobs: Sequence[Job]) -> list[Picture]:
     found = jobs[0].cut_list
-    return [
-        *_pages(
-            "cut-list",
-            "Parts",
-            ("No.", "Part", "Qty", "Material", "Thick", "Width", "Height", "Area", "Cut"),
-            [_line(item, _SHOWN) for item in found.items],
-            frozenset({0, 2, 4, 5, 6, 7, 8}),
-        ),
-        *_pages(
-            "sheets",
-            "Sheets",
-            ("Sheet", "Material", "Thick", "Pieces", "Numbers", "Used %", "Cut"),
-            list(_sheets(found, jobs, _SHOWN)),
-            frozenset({0, 2, 3, 5, 6}),
-        ),
-    ]
+    parts, sheets = [_line(item, _SHOWN) for item in found.items], list(_sheets(found, jobs, _SHOWN))
+    of_parts = ("No.", "Part", "Qty", "Material", "Thick", "Width", "Height", "Area", "Cut")
+    of_sheets = ("Sheet", "Material", "Thick", "Pieces", "Numbers", "Used %", "Cut")
+    return [*_pages("cut-list", "Parts", of_parts, parts), *_pages("sheets", "Sheets", of_sheets, sheets)]
 
 
 def _line(item: Item, decimals: int) -> tuple[str, ...]:
@@ -312,10 +300,11 @@ def _number(value: float | None, decimals: int) -> str:
 
 
 def _pages(
-    name: str, title_of: str, heads: tuple[str, ...], rows: Sequence[tuple[str, ...]], numeric: frozenset[int]
+    name: str, title_of: str, heads: tuple[str, ...], rows: Sequence[tuple[str, ...]]
 ) -> Iterator[Picture]:
     from aidl_lang.export.drafting.tables import LARGE, WIDTH, Table, written
 
+    numeric = frozenset(k for k, head in enumerate(heads) if head not in ("Part", "Material", "Numbers"))
     for first in range(0, len(rows), _ROWS):
         table = Table(name, heads, tuple(rows[first : first + _ROWS]), numeric)
         width, height = WIDTH + 2 * _MARGIN, table.height + _TITLE + 2 * _MARGIN
