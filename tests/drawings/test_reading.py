@@ -120,6 +120,21 @@ def test_what_is_not_drawn_is_not_read(body: str):
     assert kinds(f'{body}<rect width="3" height="3"/>') == [Line] * 4
 
 
+@pytest.mark.parametrize(
+    ("body", "told"),
+    [
+        ('<circle r="1" clip-path="url(#c)"/>', "left out: 1 clipped or masked shape"),
+        ('<use href="#none"/>', "left out: 1 dangling `use` element"),
+        ("<video/><text/><image/>", "left out: 1 `video` element, 1 text and 1 image"),
+        ('<circle r="1" transform="leap(3)"/>', "attributes that cannot be read, in `circle`"),
+        ('<circle r="1 furlong" id="rim"/>', "attributes that cannot be read, in `rim`"),
+    ],
+)
+def test_what_is_no_outline_is_told(body: str, told: str):
+    (remark,) = read(f'<rect width="3" height="3"/>{body}').remarks
+    assert remark.message.endswith(told)
+
+
 def test_used_groups_stand_where_they_are_used():
     body = """
         <defs><g id="dot"><circle id="rim" r="1"/></g></defs>
