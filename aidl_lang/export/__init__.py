@@ -98,7 +98,7 @@ class Exporter:
             message = f"`{suffix}` tells of the whole, and is not written part by part"
             raise ExportError("E0926", message, "give it a name without `{part}`")
         _check(replace(self._job.options, sheet=None, nest=None, show=frozenset()), suffix, FORMATS[suffix])
-        job, notes = self._grown if self._job.options.kerf else (self._job, [])
+        job, notes = self._grown
         made = []
         for item, alone in jobs_of_parts(job):
             written = Exporter(alone)._whole(suffix)
