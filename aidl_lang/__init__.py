@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from aidl_lang.common.diagnostics import AidlError, Diagnostic, Severity
 from aidl_lang.common.source import SourceFile, Span
-from aidl_lang.common.world import Reads
+from aidl_lang.common.world import PROGRAM, Reads
 from aidl_lang.version import __version__
 
 if TYPE_CHECKING:
@@ -233,15 +233,12 @@ class Model:
         return f"<aidl_lang.Model {self.status}, {problems} error{'s' * (problems != 1)}>"
 
 
-_PROGRAMS = ".aidl"
-
-
 def _read(text_or_path: str | Path) -> tuple[SourceFile, World | None]:
     """Returns a program and what it can import. One line that ends in `.aidl` is the name of a program."""
     from aidl_lang.common.world import DiskWorld, KeptWorld
 
     if isinstance(text_or_path, str):
-        if "\n" in text_or_path or not text_or_path.strip().lower().endswith(_PROGRAMS):
+        if "\n" in text_or_path or not text_or_path.strip().lower().endswith(PROGRAM):
             return SourceFile("<text>", text_or_path), None
         text_or_path = Path(text_or_path.strip())
     if not isinstance(text_or_path, Path):

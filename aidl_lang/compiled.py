@@ -5,12 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import field, replace
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING
 
 from aidl_lang.building.model import Knob, Model
 from aidl_lang.common.diagnostics import AidlError, Diagnostic, within
 from aidl_lang.common.records import record
-from aidl_lang.common.running import Later, OutOfTime, limited_to, working
+from aidl_lang.common.running import Later
 from aidl_lang.common.source import Span
 
 if TYPE_CHECKING:
@@ -21,15 +21,11 @@ if TYPE_CHECKING:
     from aidl_lang.export.comparison import Comparison
     from aidl_lang.export.drafting import Draft
     from aidl_lang.export.job import Exported, Options, Progress
-    from aidl_lang.export.sheets import Item
     from aidl_lang.geometry.drawing import Drawing
     from aidl_lang.geometry.solved import SolvedModel
     from aidl_lang.geometry.survey import Part, Survey
     from aidl_lang.interp import Asked
     from aidl_lang.solver.problem import StageReport
-
-
-T = TypeVar("T")
 
 
 def _never(span: Span) -> bool:
@@ -106,13 +102,15 @@ class Compiled:
         """
         return self.exporting(options)(suffix)
 
-    def exporting(self, options: Options | None = None, progress: Progress | None = None) -> Exporting:
+    def exporting(
+        self, options: Options | None = None, progress: Progress = lambda done, count: None
+    ) -> Exporter:
         """Returns `exported` for several formats with the same options; what they share is made once."""
         from aidl_lang.export import Exporter
         from aidl_lang.export.job import Job, Options
 
         job = Job(*self._finished, lambda: self.diagnostics, options or Options(self.show))
-        return Exporting(Exporter(job) if progress is None else Exporter(job, progress), self)
+        return Exporter(job, progress, self.limit, self.audible)
 
     def drafted(self, suffixes: Sequence[str], draft: Draft, options: Options) -> list[Exported]:
         """Returns the drawing sheets in each of some formats of pictures. Raises as `exported` does."""
@@ -172,34 +170,3 @@ class Compiled:
     def refused(self, what: str) -> AidlError:
         """Returns what to raise, with the errors, if something cannot be done for them."""
         return AidlError(*self.errors, message=": ".join([what, *(d.message for d in self.errors[:1])]))
-
-
-class Exporting:
-    """Writes the drawing of a compiled program in several formats, within its limit of time each."""
-
-    def __init__(self, exporter: Exporter, compiled: Compiled) -> None:
-        self._exporter, self._compiled = exporter, compiled
-
-    def __call__(self, suffix: str) -> Exported:
-        """Returns the drawing in the format of a file suffix. Raises as `Compiled.exported` does."""
-        return self._audible(self._limited(suffix, self._exporter.write))
-
-    def parts(self, suffix: str) -> list[tuple[Item, Exported]]:
-        """Returns each part that differs from the others by itself, with its item of the cut list."""
-        made = self._limited(suffix, self._exporter.write_parts)
-        return [(item, self._audible(exported)) for item, exported in made]
-
-    def _limited(self, suffix: str, write: Callable[[str], T]) -> T:
-        from aidl_lang.export.job import ExportError
-
-        limit = self._compiled.limit
-        try:
-            with working, limited_to(limit):
-                return write(suffix)
-        except OutOfTime:
-            hint = "write a format that holds less: pictures without `--show`, outlines alone"
-            message = f"writing the drawing as `{suffix}` takes more than {limit:g} seconds"
-            raise ExportError("E0955", message, hint) from None
-
-    def _audible(self, made: Exported) -> Exported:
-        return replace(made, notes=self._compiled.audible(made.notes))

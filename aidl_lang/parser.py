@@ -14,15 +14,8 @@ from dataclasses import replace
 from aidl_lang.common.diagnostics import MOST_ERRORS, Diagnostic, ordered, too_many_errors
 from aidl_lang.common.records import record
 from aidl_lang.common.source import SourceFile, Span
-from aidl_lang.syntax import ast
+from aidl_lang.syntax import ast, rewriting
 from aidl_lang.syntax.automaton import CLOSE_BLOCK, LONGEST, Automaton, Checkpoint, Trouble
-from aidl_lang.syntax.rewriting import (
-    begins_with_sign,
-    lines_joined_by_sign,
-    lists_as_statements,
-    spaced_call,
-    understood,
-)
 from aidl_lang.syntax.tables import END, STATEMENT_WORDS, Token, Tokens, is_open_comment, tokenize
 from aidl_lang.syntax.tree import Builder
 
@@ -54,7 +47,7 @@ class Parsed:
 def parse(source: SourceFile, limits: TextLimits = DEFAULT_LIMITS) -> Parsed:
     """Returns the tree of a file. Never raises: what cannot be read is reported (E01xx, E08xx)."""
     parsed, tokens = _read(source, limits)
-    joined = lines_joined_by_sign(parsed.module, tokens, lambda part: _read(part, limits)[0])
+    joined = rewriting.lines_joined_by_sign(parsed.module, tokens, lambda part: _read(part, limits)[0])
     return Parsed(parsed.module, ordered(parsed.diagnostics + joined))
 
 
@@ -103,9 +96,9 @@ class _Reader:
         self.tokens = tokens.tokens
         self.limits = limits
         self.automaton = Automaton(builder)
-        self.diagnostics = [spaced_call(source, token) for token in tokens.spaced_calls]
-        self.diagnostics += understood(source, self.tokens)
-        self.diagnostics += lists_as_statements(source, self.tokens)
+        self.diagnostics = [rewriting.spaced_call(source, token) for token in tokens.spaced_calls]
+        self.diagnostics += rewriting.understood(source, self.tokens)
+        self.diagnostics += rewriting.lists_as_statements(source, self.tokens)
         self.automaton.enter_block()
         self.last = Checkpoint(0, self.automaton.states[:], self.automaton.values[:], [0], 0)
         self.repairs = 0
@@ -148,12 +141,11 @@ class _Reader:
 
     def _is_item(self, position: int) -> bool:
         """Tells whether a `-` begins a constraint below one that is whole."""
-        if not begins_with_sign(self.source.text, self.tokens, position):
+        if not rewriting.begins_with_sign(self.source.text, self.tokens, position):
             return False
         return self.automaton.accepts((",", "-"))  # commas stand among constraints alone
 
     def _begin_item(self, position: int) -> None:
-        """Ends the constraint above, as a comma does."""
         start = self.tokens[position].start
         self.automaton.feed(Token(",", "", start, start))
         self.last = self.automaton.checkpoint(position)

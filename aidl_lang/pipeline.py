@@ -167,7 +167,7 @@ def compile(
                 told = audible(tries.answered(diagnostics, diagnostics, built.model), built.allowances)
             made = Compiled("wrong", Later(None, Facts(told)), watch.seconds, known)
         else:
-            way = _Finish(built, diagnostics, settings, watch, tries)
+            way = _Finish(built, diagnostics, watch, tries)
             made = way.outcome(known, frozenset(show), memory)
     made.asked = Asked(source, world, params or {}, settings)
     made.allowances = built.allowances
@@ -267,15 +267,10 @@ class _Finish:
     """The way from a built program to its outcome: it is solved, drawn, and then told of, step by step."""
 
     def __init__(
-        self,
-        built: Interpretation,
-        diagnostics: list[Diagnostic],
-        settings: Settings,
-        watch: Stopwatch,
-        tries: _Tries,
+        self, built: Interpretation, diagnostics: list[Diagnostic], watch: Stopwatch, tries: _Tries
     ) -> None:
         self.built, self.diagnostics, self.tries = built, diagnostics, tries
-        self.settings, self.watch = settings, watch
+        self.settings, self.watch = tries.settings, watch
         self.other: Rereading | None = None
         self.given: Sequence[GaveWay] = ()
         self.failures: Sequence[Explanation] = ()
@@ -413,18 +408,4 @@ def _drawn(
     return model, evaluator, drawing, notes, found
 
 
-__all__ = [
-    "Compiled",
-    "Facts",
-    "Front",
-    "Knob",
-    "Settings",
-    "again",
-    "check",
-    "compile",
-    "formatted",
-    "front",
-    "knobs",
-    "placed",
-    "redrawn",
-]
+__all__ = ["Compiled", "Facts", "Front", "Knob", "Settings"]  # of other modules; and all that is above

@@ -8,19 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 
-from aidl_lang.checking import rules
+from aidl_lang.checking import calls, rules, types
 from aidl_lang.checking.builtins import NAMING
-from aidl_lang.checking.calls import (
-    check_condition,
-    check_empty,
-    check_item,
-    check_operation,
-    check_square,
-    check_unused_geometry,
-    check_unused_params,
-    counting_params,
-    find_cycles,
-)
 from aidl_lang.checking.facts import Fact, of_symbol
 from aidl_lang.checking.infer import Inference
 from aidl_lang.checking.library import Library
@@ -28,18 +17,7 @@ from aidl_lang.checking.members import compare
 from aidl_lang.checking.rules import a, shown
 from aidl_lang.checking.subset import Variant, check_subset
 from aidl_lang.checking.symbols import Resolution, word_meant
-from aidl_lang.checking.types import (
-    ANY,
-    AnyType,
-    ListType,
-    NumberType,
-    PointType,
-    RangeType,
-    TextType,
-    TruthType,
-    Type,
-    accepts,
-)
+from aidl_lang.checking.types import AnyType, NumberType, PointType, RangeType, TruthType, Type, accepts
 from aidl_lang.checking.units import ANGLE, LENGTH
 from aidl_lang.checking.violations import Violation, check_validity
 from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix, ordered
@@ -83,9 +61,9 @@ def check(resolution: Resolution, variant: Variant = Variant.FULL) -> Program:
     for module in resolution.modules:
         checker.run(module)
         violations += check_validity(module, inference)
-    find_cycles(inference)
-    check_unused_geometry(inference)
-    check_unused_params(inference)
+    calls.find_cycles(inference)
+    calls.check_unused_geometry(inference)
+    calls.check_unused_params(inference)
     inference.diagnostics += check_subset(inference, variant)
     diagnostics = tuple(ordered([*resolution.diagnostics, *inference.diagnostics]))
     return Program(
@@ -97,7 +75,7 @@ def check(resolution: Resolution, variant: Variant = Variant.FULL) -> Program:
         diagnostics=diagnostics,
         inference=inference,
         rejected=frozenset(_rejected(resolution.modules, diagnostics)),
-        counts=counting_params(inference),
+        counts=calls.counting_params(inference),
     )
 
 
@@ -135,7 +113,7 @@ class Checker:
     def _block(self, block: ast.Block, among_constraints: bool = False) -> None:
         for statement in block.statements:
             if among_constraints and isinstance(statement, ast.ExpressionStatement):
-                check_item(self.infer, statement.value)
+                calls.check_item(self.infer, statement.value)
             else:
                 self._statement(statement, among_constraints)
 
@@ -156,10 +134,10 @@ class Checker:
                 self._attributes(node.attributes)
                 self._indices(node.indices)
                 self.infer.fact(node.value)
-                check_square(self.infer, node.value)
+                calls.check_square(self.infer, node.value)
                 self._placement(node.placement)
             case ast.Constrain(items):
-                check_empty(self.infer, node)
+                calls.check_empty(self.infer, node)
                 self._block(items, among_constraints=True)
             case _:
                 self._simple(node)
@@ -174,13 +152,13 @@ class Checker:
             case ast.Var(value=value):
                 self._unknown(value)
             case ast.ExpressionStatement(value):
-                if not check_operation(infer, value):
-                    check_condition(infer, value)
+                if not calls.check_operation(infer, value):
+                    calls.check_condition(infer, value)
             case ast.Equation(left, right):
                 if not self._joined(node):
                     compare(infer, "==", left, right, node)
             case ast.Prefer(value, weight):
-                check_condition(infer, value)
+                calls.check_condition(infer, value)
                 if weight is not None:
                     infer.known(weight, "a weight")
             case ast.Assert(test, message):
@@ -229,7 +207,7 @@ class Checker:
             return
         fact = self.infer.fact(parameter.default)
         symbol = self.infer.resolution.uses.get(parameter.name)
-        wanted = of_symbol(self.infer, symbol).type if symbol is not None else ANY
+        wanted = of_symbol(self.infer, symbol).type if symbol is not None else types.ANY
         if accepts(wanted, fact.type) is None:
             self.infer.report(
                 "E0302",
@@ -282,7 +260,7 @@ class Checker:
             case RangeType() if isinstance(domain, ast.Range):
                 for end in (domain.start, domain.end):
                     infer.same_dimension(fact, infer.fact(end), end, "the range does not fit the value:")
-            case RangeType() | ListType() | AnyType():
+            case RangeType() | types.ListType() | AnyType():
                 pass
             case kind:
                 infer.misfit(rules.no_domain(kind), domain)
@@ -291,7 +269,7 @@ class Checker:
     def _assert(self, test: ast.Expression, message: ast.Expression | None) -> None:
         self.infer.wants(test, "a condition", TruthType)
         if message is not None:
-            self.infer.wants(message, "a text", TextType)
+            self.infer.wants(message, "a text", types.TextType)
 
     def _indices(self, indices: tuple[ast.Expression, ...]) -> None:
         for index in indices:

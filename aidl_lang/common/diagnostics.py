@@ -141,14 +141,11 @@ def has_errors(diagnostics: Iterable[Diagnostic]) -> bool:
 
 def ordered(diagnostics: Iterable[Diagnostic]) -> list[Diagnostic]:
     """Returns the diagnostics in order of place, without duplicates."""
-    seen: set[tuple[object, ...]] = set()
-    unique: list[Diagnostic] = []
+    unique: dict[object, Diagnostic] = {}
     for d in diagnostics:
-        place = (d.span.source.name, d.span.start, d.span.end) if d.span else ("", -1, -1)
-        if (key := (d.code, *place, d.message)) not in seen:
-            seen.add(key)
-            unique.append(d)
-    return sorted(unique, key=lambda d: (d.span.source.name, d.span.start) if d.span else ("", -1))
+        place = (d.span.source.name, d.span.start, d.span.end) if d.span else None
+        unique.setdefault((d.code, place, d.message), d)
+    return sorted(unique.values(), key=lambda d: (d.span.source.name, d.span.start) if d.span else ("", -1))
 
 
 def by_statement(diagnostics: Iterable[Diagnostic]) -> list[Diagnostic]:

@@ -62,7 +62,7 @@ class FontFile:
             raise FontError("it is no TrueType or OpenType font")
         try:
             self._file: TTFont = TTFont(BytesIO(data), lazy=True)
-            self._characters = _characters(self._file.reader["cmap"])
+            self._runs = _runs(self._file.reader["cmap"])
             self._draw = _cff(self._file) if "CFF " in self._file else _true_type(self._file)
             self._advances: dict[str, tuple[int, int]] = self._file["hmtx"].metrics
             if not self.capital_height > 0.0:
@@ -71,14 +71,23 @@ class FontFile:
             raise FontError("its contents are broken") from reason
 
     def __contains__(self, character: str) -> bool:
-        return ord(character) in self._characters
+        return self._glyph(character) > 0
+
+    def _glyph(self, character: str) -> int:
+        """Returns the number of a glyph; 0, which is the sign for a missing character, if there is none."""
+        code = ord(character)
+        k = bisect_left(self._runs, code, key=lambda run: run[1])
+        if k == len(self._runs) or self._runs[k][0] > code:
+            return 0
+        first, _, glyph = self._runs[k]
+        return glyph + code - first
 
     def outline(self, character: str) -> tuple[tuple[Curve, ...], float]:
         """Returns the curves of a character, contour by contour, and its advance width. Raises FontError."""
         from fontTools.ttLib import TTLibError
 
         try:
-            name = self._file.getGlyphName(self._characters[ord(character)])
+            name = self._file.getGlyphName(self._glyph(character))
             return self._curves_of(name), float(self._advances[name][0])
         except (*FAULTS, TTLibError) as reason:
             raise FontError(f"its outline of `{character}` is broken") from reason
@@ -109,27 +118,10 @@ class FontFile:
 # --- Which character is which glyph ----------------------------------------------------------------
 
 
-class _Characters:
-    """Numbers of glyphs by code points, in runs of consecutive ones: (first, last, glyph of the first)."""
-
-    def __init__(self, runs: Sequence[tuple[int, int, int]]) -> None:
-        self._runs = sorted(runs, key=lambda run: run[1])
-        self._lasts = [last for _, last, _ in self._runs]
-
-    def __contains__(self, code: int) -> bool:
-        return self[code] > 0
-
-    def __getitem__(self, code: int) -> int:
-        """Returns the number of a glyph; 0, which is the sign for a missing character, if there is none."""
-        k = bisect_left(self._lasts, code)
-        if k == len(self._runs) or self._runs[k][0] > code:
-            return 0
-        first, _, glyph = self._runs[k]
-        return glyph + code - first
-
-
-def _characters(data: bytes) -> _Characters:
-    """Returns the Unicode map of a `cmap` table. Runs stay runs, as one may claim to have all characters."""
+def _runs(data: bytes) -> list[tuple[int, int, int]]:
+    """Returns the Unicode map of a `cmap` table in runs of consecutive characters: the first, the last, the
+    glyph of the first. Runs stay runs, as one may claim to have all characters.
+    """
     (count,) = struct.unpack_from(">H", data, 2)
     found: dict[int, int] = {}
     for k in range(count):
@@ -140,9 +132,10 @@ def _characters(data: bytes) -> _Characters:
         at = found[12]
         (count,) = struct.unpack_from(">L", data, at + 12)
         groups = range(min(count, len(data) // 12))
-        return _Characters([struct.unpack_from(">LLL", data, at + 16 + 12 * k) for k in groups])
+        runs = [struct.unpack_from(">LLL", data, at + 16 + 12 * k) for k in groups]
+        return sorted(runs, key=lambda run: run[1])
     if 4 in found:
-        return _Characters(list(_segments(data, found[4])))
+        return sorted(_segments(data, found[4]), key=lambda run: run[1])
     raise FontError("it does not say which characters it has")
 
 

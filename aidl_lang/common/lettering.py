@@ -289,8 +289,6 @@ def _way(words: Sequence[str]) -> Iterator[Curve]:
     ]
     if is_closed:
         rounded.append(rounded[0])
-    elif len(rounded[0]) > 1:
-        yield rounded[0]
     for one, other in pairwise(rounded):
         if math.dist(one[-1], other[0]) > 1e-9:
             yield one[-1], other[0]

@@ -118,8 +118,6 @@ worsting
 """English words one slip away from one of WORDS."""
 
 
-# --- Names as people and models spell them: lookup without regard to case and underscores, and suggestions.
-
 T = TypeVar("T")
 
 _NUMBER = re.compile(r"\d+")

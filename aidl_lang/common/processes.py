@@ -20,7 +20,7 @@ from importlib.util import find_spec
 from multiprocessing import connection
 from multiprocessing.reduction import ForkingPickler
 from queue import SimpleQueue
-from typing import Any, Generic, Protocol, TypeVar
+from typing import Any, Generic, TypeAlias, TypeVar
 
 from aidl_lang.common.diagnostics import AidlError, Diagnostic
 from aidl_lang.common.names import nearest
@@ -58,27 +58,14 @@ class LimitError(Exception):
         self.limit = limit
 
 
-class Engine(Protocol):
-    """Whatever carries out calls: the processes of this machine, or the workers of a cluster."""
-
-    @property
-    def places(self) -> int:
-        """The number of calls that it carries out side by side, as far as it is known now."""
-        ...
-
-    def submit(self, seconds: float, task: Callable[..., T], *arguments: object) -> Future[T]:
-        """Has a picklable call carried out within some seconds; `limit_met` tells how it broke."""
-        ...
-
-    def close(self) -> None:
-        """Gives up all calls that are not done."""
-        ...
+Engine: TypeAlias = "Guarded | Cluster"
+"""Whatever carries out calls: the processes of this machine, or the workers of a cluster."""
 
 
 class Guarded:
     """A pool of processes that carry out calls side by side, each within limits of time and memory. A process
     may die at any instant, and takes none but its own call along: it shares a pipe with one thread of this
-    process and nothing with the others. It is replaced.
+    process and nothing with the others. It is replaced. `places` says how many there are.
     """
 
     def __init__(self, workers: int, preload: str | Sequence[str], memory: int = MEMORY) -> None:
@@ -93,10 +80,12 @@ class Guarded:
             place.start()
 
     def submit(self, seconds: float, task: Callable[..., T], *arguments: object) -> Future[T]:
-        """Has a call carried out (see `Engine`). Cancelling ends its process."""
-        call = _Call(seconds, ForkingPickler.dumps((task, arguments)))
-        self._calls.put(call)
-        return call.future
+        """Has a picklable call carried out within some seconds; `limit_met` tells how it broke. Cancelling
+        ends its process.
+        """
+        future: Future[T] = Future()
+        self._calls.put((seconds, ForkingPickler.dumps((task, arguments)), future))
+        return future
 
     def close(self) -> None:
         """Ends all processes, busy or not."""
@@ -108,12 +97,8 @@ class Guarded:
             place.join(_STARTING)
 
 
-class _Call:
-    """A call to be carried out: the seconds that it has, and the pickled task with its arguments."""
-
-    def __init__(self, seconds: float, data: memoryview) -> None:
-        self.seconds, self.data = seconds, data
-        self.future: Future[Any] = Future()
+_Call: TypeAlias = tuple[float, memoryview, Future[Any]]
+"""The seconds that a call has, the pickled task with its arguments, and what comes of it."""
 
 
 class _Place(threading.Thread):
@@ -125,7 +110,7 @@ class _Place(threading.Thread):
         super().__init__(daemon=True)
         self._calls, self._context, self._memory = calls, context, memory
         self._process: Any = None
-        self._call: _Call | None = None
+        self._current: Future[Any] | None = None
         self._lock = threading.Lock()
         self._is_closed = False
 
@@ -133,7 +118,7 @@ class _Place(threading.Thread):
         with suppress(LimitError, RuntimeError):  # which a call would meet again
             self._begin()
         while (call := self._calls.get()) is not None:
-            self._carry_out(call)
+            self._carry_out(*call)
         self._end()
 
     def close(self) -> None:
@@ -142,24 +127,22 @@ class _Place(threading.Thread):
         with self._lock:
             self._kill()
 
-    def _given_up(self, call: _Call) -> None:
-        """Ends the process if it is at a call."""
+    def _given_up(self, future: Future[Any]) -> None:
         with self._lock:
-            if self._call is call:
+            if self._current is future:
                 self._kill()
 
-    def _carry_out(self, call: _Call) -> None:
-        future = call.future
-        self._call = call
+    def _carry_out(self, seconds: float, data: memoryview, future: Future[Any]) -> None:
+        self._current = future
         # a call that is carried out may be cancelled until it is done
-        future.add_done_callback(lambda _: self._given_up(call))
+        future.add_done_callback(self._given_up)
         is_well, result = False, None
         try:
-            is_well, result = self._answer(call)
+            is_well, result = self._answer(seconds, data, future)
         except Exception as error:  # noqa: BLE001 (handed over, whatever it is)
             result = error
         with self._lock:
-            self._call = None
+            self._current = None
         if not future.set_running_or_notify_cancel():
             self._end()
         elif is_well:
@@ -167,22 +150,22 @@ class _Place(threading.Thread):
         else:
             future.set_exception(result)
 
-    def _answer(self, call: _Call) -> tuple[bool, Any]:
+    def _answer(self, seconds: float, data: memoryview, future: Future[Any]) -> tuple[bool, Any]:
         """Returns whether a call ended well, and its result or its error. Raises LimitError."""
         for left in reversed(range(_TRIALS)):
             try:
                 self._begin()
-                with self._within(call.seconds):
-                    if call.future.cancelled():
+                with self._within(seconds):
+                    if future.cancelled():
                         raise EOFError
-                    self._channel.send_bytes(call.data)
+                    self._channel.send_bytes(data)
                 break
             except LimitError as error:  # the process was gone before it had the call
-                if error.limit is Limit.TIME or not left or call.future.cancelled():
+                if error.limit is Limit.TIME or not left or future.cancelled():
                     raise
-        with self._within(call.seconds):
-            data = self._channel.recv_bytes()
-        return ForkingPickler.loads(data)  # type: ignore[no-any-return]
+        with self._within(seconds):
+            answer = self._channel.recv_bytes()
+        return ForkingPickler.loads(answer)  # type: ignore[no-any-return]
 
     def _begin(self) -> None:
         """Starts the process unless there is one, and waits until it is ready. Raises LimitError."""
@@ -413,9 +396,7 @@ class Crew(Generic[K, T]):
         calls = list(self._waiting.values())
         self._give_up()
         self._heard = time.monotonic()
-        for call in calls:
-            if call.deaths + 1 < _LIVES:
-                self._later.append(replace(call, deaths=call.deaths + 1))
+        self._later += [replace(call, deaths=call.deaths + 1) for call in calls if call.deaths + 1 < _LIVES]
         over = LimitError(Limit.TIME)
         return [(call.key, Broke(over.limit, over)) for call in calls if call.deaths + 1 >= _LIVES]
 
@@ -432,12 +413,11 @@ class Crew(Generic[K, T]):
 
 def _once_more(call: _Given[K, T], error: BaseException) -> _Given[K, T] | None:
     """Returns a call that broke as it is to be begun again; None if it is not."""
-    deaths = call.deaths + (limit_met(error) is Limit.DEATH)
-    losses = call.losses + isinstance(error, GoneError)
-    is_unlucky = (deaths > call.deaths and deaths < _LIVES) or (losses > call.losses and losses < _RETURNS)
-    if not is_unlucky:
-        return None
-    return replace(call, deaths=deaths, losses=losses)
+    if limit_met(error) is Limit.DEATH and call.deaths + 1 < _LIVES:
+        return replace(call, deaths=call.deaths + 1)
+    if isinstance(error, GoneError) and call.losses + 1 < _RETURNS:
+        return replace(call, losses=call.losses + 1)
+    return None
 
 
 # --- Calls on a cluster: a scheduler of Dask and its workers, which come and go.
@@ -458,7 +438,7 @@ _LOOKING = 0.5
 
 
 class Cluster:
-    """The workers of a scheduler, as an `Engine`."""
+    """The workers of a scheduler, which carry out calls as `Guarded` does."""
 
     def __init__(self, address: str, preload: str) -> None:
         """Connects to a scheduler at an address such as `tcp://host:8786`; `preload` is the module that
@@ -501,7 +481,7 @@ class Cluster:
         return self._places
 
     def submit(self, seconds: float, task: Callable[..., T], *arguments: object) -> Future[T]:
-        """Has a call carried out (see `Engine`)."""
+        """Has a call carried out (see `Guarded`)."""
         local: Future[T] = Future()
         if self._client.status == "closed":
             raise self._gone()

@@ -72,21 +72,17 @@ def _maker(cls: type, space: dict[str, object]) -> str:
     space["MISSING"] = MISSING
     positional, named, body = ["self"], ["*"], []
     for each in fields(cls):
-        name, default = each.name, f"default_{each.name}"
-        value = name
-        parameter = name
+        if not each.init:
+            continue
+        value = parameter = name = each.name
+        default = f"default_{name}"
         if each.default_factory is not MISSING:
             space[default] = each.default_factory
-            parameter = f"{name}=MISSING"
-            value = f"{default}() if {name} is MISSING else {name}" if each.init else f"{default}()"
+            parameter, value = f"{name}=MISSING", f"{default}() if {name} is MISSING else {name}"
         elif each.default is not MISSING:
             space[default] = each.default
             parameter = f"{name}={default}"
-            value = name if each.init else default
-        elif not each.init:
-            continue
-        if each.init:
-            (named if each.kw_only else positional).append(parameter)
+        (named if each.kw_only else positional).append(parameter)
         body.append(f"self.{name} = {value}")
     if hasattr(cls, "__post_init__"):
         body.append("self.__post_init__()")

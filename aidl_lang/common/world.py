@@ -266,43 +266,32 @@ class DiskWorld:
             raise FileError(path, ReadFailure[reason]) from None
 
 
-class NotedWorld:
-    """The files of another world; `asked` has the paths of those that were asked for, there or not."""
-
-    def __init__(self, world: World) -> None:
-        self._world = world
-        self.asked: set[str] = set()
-
-    def read(self, path: str) -> str:
-        self.asked.add(path)
-        return self._world.read(path)
-
-    def read_bytes(self, path: str) -> bytes:
-        self.asked.add(path)
-        return self._world.read_bytes(path)
-
-
 class KeptWorld:
-    """The files of another world, each read once and kept so, also in a pickle, which leaves that behind."""
+    """The files of another world, each read once and kept so, also in a pickle, which leaves that behind;
+    `asked` has the paths of those that were asked for, there or not.
+    """
 
     def __init__(self, world: World) -> None:
         self._world = world
         self.reads = reads_of(world)
+        self.asked: set[str] = set()
         self._texts: dict[str, str] = {}
         self._bytes: dict[str, bytes] = {}
 
     def read(self, path: str) -> str:
+        self.asked.add(path)
         if (wanted := normalize(path)) not in self._texts:
             self._texts[wanted] = self._world.read(path)
         return self._texts[wanted]
 
     def read_bytes(self, path: str) -> bytes:
+        self.asked.add(path)
         if (wanted := normalize(path)) not in self._bytes:
             self._bytes[wanted] = self._world.read_bytes(path)
         return self._bytes[wanted]
 
     def __getstate__(self) -> dict[str, object]:
-        return {"_world": MemoryWorld({}), "reads": Reads(), "_texts": self._texts, "_bytes": self._bytes}
+        return vars(self) | {"_world": MemoryWorld({}), "reads": Reads()}
 
 
 def reads_of(world: World | None) -> Reads:

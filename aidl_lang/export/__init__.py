@@ -2,20 +2,24 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import replace
 from functools import cached_property
 from importlib import import_module
 from pathlib import PurePath
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.records import record
+from aidl_lang.common.running import OutOfTime, limited_to, working
 from aidl_lang.export.job import ON_SHEETS, Exported, ExportError, Job, Options, Progress, require
 
 if TYPE_CHECKING:
     from aidl_lang.export.marks import Picture
     from aidl_lang.export.sheets import Item
+
+T = TypeVar("T")
 
 
 @record()
@@ -40,13 +44,40 @@ class Format:
 class Exporter:
     """Writes a job in several formats. What the options do to the drawing first is worked out once for all of
     them; `progress` hears how many steps of that are done, and of how many.
+
+    limit    seconds of the processor's time for each format
+    audible  returns those of some notes that are to be told
     """
 
-    def __init__(self, job: Job, progress: Progress = lambda done, count: None) -> None:
-        self._job, self._progress = job, progress
+    def __init__(
+        self,
+        job: Job,
+        progress: Progress = lambda done, count: None,
+        limit: float = math.inf,
+        audible: Callable[[Sequence[Diagnostic]], tuple[Diagnostic, ...]] = tuple,
+    ) -> None:
+        self._job, self._progress, self._limit, self._audible = job, progress, limit, audible
 
-    def write(self, suffix: str) -> Exported:
+    def __call__(self, suffix: str) -> Exported:
         """Writes the drawing in the format of a file suffix (`.svg`). Raises as `export` does."""
+        made = self._limited(suffix, self._whole)
+        return replace(made, notes=self._audible(made.notes))
+
+    def parts(self, suffix: str) -> list[tuple[Item, Exported]]:
+        """Writes each different part by itself, flat, its corner at the origin; raises as `export`."""
+        made = self._limited(suffix, self._parts)
+        return [(item, replace(each, notes=self._audible(each.notes))) for item, each in made]
+
+    def _limited(self, suffix: str, write: Callable[[str], T]) -> T:
+        try:
+            with working, limited_to(self._limit):
+                return write(suffix)
+        except OutOfTime:
+            hint = "write a format that holds less: pictures without `--show`, outlines alone"
+            message = f"writing the drawing as `{suffix}` takes more than {self._limit:g} seconds"
+            raise ExportError("E0955", message, hint) from None
+
+    def _whole(self, suffix: str) -> Exported:
         from aidl_lang.export.unsaid import notes_of
 
         wanted, job = FORMATS[suffix], self._job
@@ -60,18 +91,17 @@ class Exporter:
         made = wanted.write(jobs)
         return replace(made, notes=(*notes, *_unlisted(job, suffix), *unsaid, *made.notes))
 
-    def write_parts(self, suffix: str) -> list[tuple[Item, Exported]]:
-        """Writes each different part by itself, flat, its corner at the origin; raises as `export`."""
+    def _parts(self, suffix: str) -> list[tuple[Item, Exported]]:
         from aidl_lang.export.sheets import jobs_of_parts
 
         if suffix in (".json", ".csv"):
             message = f"`{suffix}` tells of the whole, and is not written part by part"
             raise ExportError("E0926", message, "give it a name without `{part}`")
         _check(replace(self._job.options, sheet=None, nest=None, show=frozenset()), suffix, FORMATS[suffix])
-        job, notes = self._grown if self._job.options.kerf else (self._job, [])
+        job, notes = self._grown
         made = []
         for item, alone in jobs_of_parts(job):
-            written = Exporter(alone).write(suffix)
+            written = Exporter(alone)._whole(suffix)
             made.append((item, replace(written, notes=(*notes, *written.notes))))
         return made
 
@@ -98,7 +128,7 @@ def export(job: Job, suffix: str) -> Exported:
     Raises KeyError for an unknown suffix, ExportError where the format cannot hold the drawing or a package
     for it is missing.
     """
-    return Exporter(job).write(suffix)
+    return Exporter(job)(suffix)
 
 
 def require_sheets(options: Options) -> None:
@@ -188,13 +218,6 @@ def _pictures(suffix: str) -> Callable[[Sequence[Job]], Exported]:
     return write
 
 
-def _json(jobs: Sequence[Job]) -> Exported:
-    from aidl_lang.export.json import to_json
-
-    (job,) = jobs
-    return Exported(to_json(job.model, job.drawing, job.diagnostics(), job.options.timings).encode())
-
-
 def _writer(module: str, name: str) -> Callable[[Any], Exported]:
     """Returns a writer by its module, which is loaded when it first writes."""
     return lambda given: getattr(import_module(f"aidl_lang.export.{module}"), name)(given)
@@ -221,7 +244,7 @@ FORMATS: dict[str, Format] = {
     ".stp": Format(_each("step", "to_step"), needs=("OCP", "step")),
     ".stl": Format(_each("mesh", "to_stl"), "STL mesh"),
     ".3mf": Format(_each("mesh", "to_3mf"), "3MF for printers", ("lib3mf", "3mf")),
-    ".json": Format(_json),
+    ".json": Format(_each("json", "to_json")),
 }
 
 OFFERED = {suffix[1:]: made.label for suffix, made in FORMATS.items() if made.label}

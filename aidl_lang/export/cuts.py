@@ -83,9 +83,9 @@ class Outline:
     layer  what `@layer` says, else the kind of the structure, `open` for curves that were to bound something
     style  of its lines; what it says of a fill is said of none
     operation  what a machine does along it, one of `OPERATIONS`; none for `open` ones
-    area   the number of the area that it bounds together with others, where that is engraved
     hole   path of the hole that an inner outline comes from; a ring has its inner one without any
     clockwise  whether a whole curve, which has no direction of its own, is run through clockwise
+    area   the number of the area that it bounds together with others, where that is engraved
     """
 
     pieces: tuple[Piece, ...]
@@ -94,9 +94,9 @@ class Outline:
     layer: str
     style: Style
     operation: str = ""
-    area: int = 0
     hole: str | None = None
     clockwise: bool = False
+    area: int = 0
 
     @property
     def loop(self) -> Loop:
@@ -204,16 +204,8 @@ def _cuts(model: SolvedModel, drawing: Drawing, profile: Profile) -> Iterator[Ou
             look = body.style
             style = replace(drawing.styles[hole or body.path], stroke=look.stroke, dash=look.dash)
             operation = profile.operation(style.layer, OUTER if (number, k) in late else INNER)
-            yield Outline(
-                loop.pieces,
-                True,
-                body.path,
-                style.layer or HOLE,
-                style,
-                operation,
-                hole=hole,
-                clockwise=loop.reversed,
-            )
+            layer = style.layer or HOLE
+            yield Outline(loop.pieces, True, body.path, layer, style, operation, hole, loop.reversed)
         layer = body.style.layer or kinds[body.path]
         operation = profile.operation(body.style.layer, OUTER)
         yield Outline(face.outer.pieces, True, body.path, layer, body.style, operation)

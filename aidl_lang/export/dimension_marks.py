@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from aidl_lang.common.prose import fixed
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
-from aidl_lang.export.marks import DIMENSION, Area, Block, Curves, Ink, Mark, Text, arrowhead
+from aidl_lang.export.marks import CAPITAL, DIMENSION, Area, Block, Curves, Ink, Mark, Text, arrowhead
 from aidl_lang.geometry.curves import Arc, Bounds, Circle, Line, Piece, Vec, union_bounds
 from aidl_lang.geometry.dimensions.features import dot
 from aidl_lang.geometry.drawing import Drawing
@@ -26,8 +26,8 @@ from aidl_lang.geometry.solved import Dimension, Length, Opening, Roundness
 
 Segment: TypeAlias = tuple[Vec, Vec]
 
-HEIGHT, CAPITAL = 3.5, 0.73
-"""Height of digits on paper in mm, and relative to the size of the font."""
+HEIGHT = 3.5
+"""Height of digits on paper, mm."""
 HEAD, HEAD_WIDTH, GAP, BEYOND, RAISED, LINE = 3.0, 1.0, 1.0, 2.0, 1.3, 0.18
 """Arrowheads, gaps before and ends of extension lines, values above their line, line width: mm on paper."""
 DIGIT = 0.64

@@ -12,12 +12,11 @@ from aidl_lang.common.colors import rgb
 from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.drawings.dxf import ENGRAVED
 from aidl_lang.common.prose import fixed, shortened
-from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
 from aidl_lang.common.source import Span
 from aidl_lang.export.cuts import Outline, outlines
 from aidl_lang.export.job import UNITS, Exported, Job
-from aidl_lang.export.marks import Text
+from aidl_lang.export.marks import CAPITAL, Text
 from aidl_lang.export.overlay import labels
 from aidl_lang.export.profiles import FILL, ON_PARTS, PLAIN, SCORE, Look
 from aidl_lang.geometry.arcs import as_arcs
@@ -49,21 +48,13 @@ FURTHER = (3, 4, 30, 200, 140, 54, 8)
 """Colours for layers of the author, in turn, since some programs tell layers apart by colour alone."""
 
 
-@record()
-class _Names:
-    """What a version of DXF takes as the name of a layer, and how that is said."""
-
-    longest: int
-    refused: re.Pattern[str]
-    rule: str
-
-
-_NEW = _Names(
+_NEW = (
     255,
     re.compile('[<>/\\\\":;?*|,=`^\x00-\x1f\x7f-\x9f\u2028\u2029\ud800-\udfff]'),
     'names in DXF have 1 to 255 characters and none of < > / \\ " : ; ? * | , = ` ^',
 )
-_OLD = _Names(31, re.compile("[^A-Za-z0-9$_-]"), "names in DXF R12 have 1 to 31 letters, digits, $, - and _")
+_OLD = (31, re.compile("[^A-Za-z0-9$_-]"), "names in DXF R12 have 1 to 31 letters, digits, $, - and _")
+"""The longest name of a layer, what it may not have, and how that is said."""
 _ALIKE = "DXF makes no difference between capital and small letters in names, and keeps some for itself"
 _NEVER_PLOTTED = "defpoints"
 
@@ -85,7 +76,6 @@ class Looks:
 
     def __init__(self, document: Any, job: Job, is_old: bool) -> None:
         self._document, self._job, self._is_old = document, job, is_old
-        self._rules = _OLD if is_old else _NEW
         self._names: dict[str, str] = {}
         self._taken = {_NEVER_PLOTTED, *OWN}
         self._colors: dict[str, str] = {}
@@ -103,7 +93,6 @@ class Looks:
         return {"layer": name} | own
 
     def _line(self, style: Style) -> dict[str, Any]:
-        """Returns the attributes of lines of a style; none where it asks for nothing."""
         found: dict[str, Any] = {}
         if style.width is not None and not self._is_old:
             found["lineweight"] = weight(style.width)
@@ -144,9 +133,8 @@ class Looks:
         return index | color_attributes(look.color, is_old=False) | {"lineweight": weight(look.width)}
 
     def _free(self, wanted: str) -> str:
-        """Returns a free name like the wanted one that DXF allows."""
-        longest = self._rules.longest
-        allowed = self._rules.refused.sub("_", wanted).strip()[:longest] or "_"
+        longest, refused, rule = _OLD if self._is_old else _NEW
+        allowed = refused.sub("_", wanted).strip()[:longest] or "_"
         name, count = allowed, 1
         while name.casefold() in self._taken:
             count += 1
@@ -154,7 +142,7 @@ class Looks:
         self._taken.add(name.casefold())
         if name != wanted:
             message = f"the layer `{shortened(wanted, 60)}` is called `{shortened(name, 60)}` in the DXF"
-            why = _ALIKE if count > 1 else self._rules.rule
+            why = _ALIKE if count > 1 else rule
             self.notes.append(Diagnostic("W0720", message, self._place(wanted), hints=(why,)))
         return name
 
@@ -186,8 +174,6 @@ DIGITS = 13
 """Coordinates have this many digits of the size of the drawing, past which rounding errors begin."""
 LABELS, GREY = "labels", "#808080"
 """The layer for names and numbers of parts."""
-CAPITAL = 0.73
-"""Height of capitals, by which DXF has the size of a text, relative to the size of the font."""
 TEXT_BYTES, ESCAPED = 255, 7
 """Bytes of a text in XDATA, and of a character that the file's encoding lacks."""
 PATTERN_GOES_ON = 128
@@ -266,7 +252,6 @@ def _add_labels(document: Any, texts: Iterable[Text], looks: Looks) -> None:
 
 
 def _set_view(document: Any, drawing: Drawing, factor: float) -> None:
-    """Sets extents, limits and a first view that show the drawing with its lengths multiplied."""
     left, bottom, right, top = (factor * side for side in drawing.box)
     space = document.modelspace()
     space.dxf.limmin, space.dxf.limmax = (left, bottom), (right, top)

@@ -10,7 +10,7 @@ from dataclasses import field
 from functools import cached_property
 from importlib.util import find_spec
 from pathlib import PurePath
-from typing import TYPE_CHECKING, Protocol, TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
 
 from aidl_lang.common.diagnostics import AidlError, Diagnostic
 from aidl_lang.common.names import nearest
@@ -20,6 +20,7 @@ from aidl_lang.geometry.drawing import Drawing
 from aidl_lang.geometry.solved import SolvedModel
 
 if TYPE_CHECKING:
+    from aidl_lang.export import Exporter
     from aidl_lang.export.profiles import Profile
     from aidl_lang.export.sheets import CutList, Item
 
@@ -191,16 +192,8 @@ def _braced(words: Sequence[str]) -> list[str]:
     return [f"{{{word}}}" for word in words]
 
 
-class Writing(Protocol):
-    """Writes a drawing in the format of a suffix, as a whole or part by part."""
-
-    def __call__(self, suffix: str) -> Exported: ...
-
-    def parts(self, suffix: str) -> list[tuple[Item, Exported]]: ...
-
-
 def contents(
-    writing: Writing, name: str, suffix: str
+    writing: Exporter, name: str, suffix: str
 ) -> tuple[list[tuple[str, bytes]], tuple[Diagnostic, ...]]:
     """Returns all files of an output by name, and diagnostics about them. Raises as `writing` does."""
     if not is_pattern(name):

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 from aidl_lang.common.diagnostics import Diagnostic
@@ -15,37 +15,27 @@ from aidl_lang.common.prose import rounded
 from aidl_lang.common.render.terminal import to_dict as diagnostic_dict
 from aidl_lang.common.running import checkpoint
 from aidl_lang.common.source import Span
+from aidl_lang.export.job import Exported, Job
 from aidl_lang.geometry.boolean import Contact
 from aidl_lang.geometry.curves import KINDS
 from aidl_lang.geometry.drawing import Drawing
 from aidl_lang.geometry.region import Loop, Measures, Region
-from aidl_lang.geometry.solved import (
-    Box,
-    Finish,
-    Mobility,
-    SolvedGeometry,
-    SolvedModel,
-    SolvedStructure,
-    described,
-)
+from aidl_lang.geometry.solved import Box, Mobility, SolvedGeometry, SolvedModel, SolvedStructure, described
 
 VERSION = 1
 _NUMBERS = re.compile(r"\[\n\s*[-+.\deE]+(?:,\n\s*[-+.\deE]+)*\n\s*\]")
 _POLYGONS = re.compile(r'(?<="coordinates": )\d+')
+_FINISHES = {"fillet": ("radius",), "chamfer": ("size", "second")}
+"""Names of the sizes of finished corners."""
 Json = dict[str, Any]
 
 TOLERANCE = 1e-3
 """Largest distance of the polygons of regions from their outlines, relative to the size of the drawing."""
 
 
-def to_json(
-    model: SolvedModel,
-    drawing: Drawing,
-    diagnostics: Iterable[Diagnostic] = (),
-    timings: Mapping[str, float] | None = None,
-) -> str:
-    """Returns the document as text with one member per line, lists of numbers and polygons in one line."""
-    document = to_dict(model, drawing, diagnostics, timings)
+def to_json(job: Job) -> Exported:
+    """Writes the document with one member per line, lists of numbers and polygons in one line."""
+    document = to_dict(job.model, job.drawing, job.diagnostics(), job.options.timings)
     polygons = []
     for number, region in enumerate(document["regions"].values()):  # each has its number for a while
         polygons.append(json.dumps(region["geometry"]["coordinates"]))
@@ -53,7 +43,8 @@ def to_json(
     text = json.dumps(document, ensure_ascii=False, indent=1, allow_nan=False)
     # JSON strings hold no line breaks and no quotes, so these patterns are never inside one.
     text = _NUMBERS.sub(lambda match: "".join(match[0].split()).replace(",", ", "), text)
-    return _POLYGONS.sub(lambda match: polygons[int(match[0])], text) + "\n"
+    text = _POLYGONS.sub(lambda match: polygons[int(match[0])], text)
+    return Exported(f"{text}\n".encode())
 
 
 def to_dict(
@@ -76,14 +67,14 @@ def to_dict(
             for c in model.constraints
         ],
         "dof": model.degrees,
-        "free": list(model.mobility().free),
+        "free": model.mobility().free,
         "motions": [
-            {"kind": m.kind, "things": list(m.things), "words": m.words, "moves": dict(m.moves)}
+            {"kind": m.kind, "things": m.things, "words": m.words, "moves": m.moves}
             | ({"against": m.against} if m.against else {})
             for m in model.motions
         ],
         "changed": [
-            {"path": c.path, "written": c.written, "solved": c.solved, "because": list(c.because)}
+            {"path": c.path, "written": c.written, "solved": c.solved, "because": c.because}
             for c in model.changed
         ],
         "tolerance": tolerance,
@@ -99,7 +90,7 @@ def to_dict(
             {"text": r.span.one_line, **_place(r.span), "reading": r.text} for r in model.readings
         ]
     if timings is not None:
-        document["timings"] = dict(timings)
+        document["timings"] = timings
     result: Json = rounded(document)
     return result
 
@@ -119,27 +110,24 @@ def _structure(s: SolvedStructure, mobility: Mobility) -> Json:
         "orientation": s.orientation,
         "frame": frame,
         "bb": None if s.box is None else _box(s.box),
-        "params": dict(s.params),
+        "params": s.params,
         "geometry": {g.name: _geometry(g) for g in s.geometry},
         "structures": [_structure(c, mobility) for c in s.structures],
         **dict(zip(("dof", "constrained"), mobility.of(s), strict=True)),
     }
-    attributes = {name: list(values) for name, values in s.attributes.items() if name != "orientation"}
-    if attributes:
+    if attributes := {name: values for name, values in s.attributes.items() if name != "orientation"}:
         entry["attributes"] = attributes
     if s.finishes:
-        entry["finishes"] = [finish for f in s.finishes for finish in _finishes(f)]
+        entry["finishes"] = [
+            {"kind": f.kind, "at": at} | dict(zip(_FINISHES[f.kind], f.sizes, strict=False))
+            for f in s.finishes
+            for at in f.corners
+        ]
     if s.is_empty:
         entry["empty"] = True
     if s.doc:
         entry["doc"] = s.doc
     return entry
-
-
-def _finishes(f: Finish) -> Iterator[Json]:
-    names = ("radius",) if f.kind == "fillet" else ("size", "second")
-    for at in f.corners:
-        yield {"kind": f.kind, "at": at} | dict(zip(names, f.sizes, strict=False))
 
 
 def _box(box: Box) -> Json:
@@ -179,12 +167,12 @@ def _geometry(g: SolvedGeometry) -> Json:
     if g.type in KINDS or g.type == "point":
         entry |= g.values
     else:
-        entry["params"] = {name: list(v) if isinstance(v, tuple) else v for name, v in g.values.items()}
+        entry["params"] = g.values
         entry["parts"] = {part.name: _geometry(part) for part in g.parts}
     if g.construction:
         entry["construction"] = True
     if g.attributes:
-        entry["attributes"] = {name: list(values) for name, values in g.attributes.items()}
+        entry["attributes"] = g.attributes
     return entry
 
 

@@ -88,8 +88,8 @@ def _brightness(parts: tuple[int, int, int]) -> float:
 
 # --- The marks of pictures, as data: areas, curves, texts, dots and frames. Coordinates in mm, y upwards.
 
-CHARACTER = 0.6
-"""Mean width of a character of the font, relative to its size."""
+CHARACTER, CAPITAL = 0.6, 0.73
+"""Mean width of a character of the font, and height of a capital, relative to its size."""
 ANCHORS = {"start": 0.0, "middle": -0.5, "end": -1.0}
 """Where a text begins, seen from where it is anchored, relative to its width."""
 
@@ -361,7 +361,7 @@ class Placing:
 
 # --- Pictures for few pixels: no line thinner than one, and black lines on white without colours.
 
-_BLACK, _WHITE = "#000000", PAPER
+_BLACK = "#000000"
 _SHORTEST_DASH = 2.0
 """Pixels; shorter ones cannot be told from a line."""
 _SEEN_THROUGH = 0.5
@@ -433,25 +433,15 @@ def _redrawn(picture: Picture, change: Callable[[Mark], Mark | None]) -> Picture
 
 def _plain(mark: Mark) -> Mark | None:
     match mark:
-        case Area(ink=ink):
-            if mark.is_sign:
-                return replace(mark, fill=_BLACK, opacity=1.0)
-            is_hiding = mark.fill is not None and mark.opacity > _SEEN_THROUGH and not mark.fades
-            fill = _WHITE if is_hiding else None
-            line = None if ink is None else _solid(ink)
-            return replace(mark, fill=fill, opacity=1.0, ink=line, gradient=None)
         case Curves(role="seam"):
             return None
-        case Curves(role="halo", ink=ink):
-            return replace(mark, ink=replace(ink, color=_WHITE))
-        case Curves(ink=ink):
-            return replace(mark, ink=_solid(ink))
-        case Text() | Dot() | Frame():
+        case Text():
             return replace(mark, color=_BLACK)
-
-
-def _solid(ink: Ink) -> Ink:
-    return replace(ink, color=_BLACK, opacity=1.0)
+        case Area(opacity=opacity):
+            mark = replace(mark, opacity=float(mark.is_sign or opacity > _SEEN_THROUGH))
+        case Curves(ink=ink):
+            mark = replace(mark, ink=replace(ink, opacity=1.0))
+    return _reduced(mark, REDUCED["ink"])
 
 
 # --- The looks of a picture as a whole: as the author coloured it, white on blue, or black on white.
@@ -474,7 +464,7 @@ class Theme:
 
 REDUCED = {
     "blueprint": Theme("#1d4b87", "#2a5a99", "#eaf2ff"),
-    "ink": Theme("#ffffff", "#ffffff", "#000000"),
+    "ink": Theme(PAPER, PAPER, _BLACK),
 }
 THEMES = (AS_COLOURED, *REDUCED, FOR_CUTTER)
 

@@ -16,24 +16,9 @@ from aidl_lang.common.lettering import unknown_characters
 from aidl_lang.common.prose import first_few, size_text
 from aidl_lang.common.resources import resource
 from aidl_lang.common.running import checkpoint
+from aidl_lang.export import marks
 from aidl_lang.export.job import ExportError
-from aidl_lang.export.marks import (
-    ANCHORS,
-    Area,
-    Curves,
-    Dot,
-    Frame,
-    Gradient,
-    Group,
-    Ink,
-    Mark,
-    Picture,
-    Text,
-    resolved,
-    scaled,
-    separated,
-    spaced,
-)
+from aidl_lang.export.marks import Area, Curves, Dot, Frame, Gradient, Group, Ink, Mark, Picture, Text
 from aidl_lang.export.svg import to_svg
 from aidl_lang.geometry.curves import Bezier, Bounds, Circle, Line, Piece, Vec
 from aidl_lang.version import __version__
@@ -50,7 +35,7 @@ def font_file() -> str:
 
 def character_notes(pages: Iterable[Picture]) -> tuple[Diagnostic, ...]:
     """Warns of characters in the texts that the font lacks."""
-    texts = (mark.text for page in pages for mark in separated(page)[1])
+    texts = (mark.text for page in pages for mark in marks.separated(page)[1])
     missing = unknown_characters("".join(dict.fromkeys("".join(texts))))
     if not missing:
         return ()
@@ -74,12 +59,12 @@ def to_png(picture: Picture, pixels: int) -> bytes:
     from PIL import Image
 
     whole = max(picture.width, picture.height)
-    picture = spaced(picture, SLIMMEST * whole, SLIMMEST * whole)
+    picture = marks.spaced(picture, SLIMMEST * whole, SLIMMEST * whole)
     density = MM_PER_INCH * pixels / whole
     if whole > LARGEST:  # round lines of such a size take resvg for ever, however few pixels they are
-        picture = scaled(picture, LARGEST / whole)
+        picture = marks.scaled(picture, LARGEST / whole)
     per_mm = pixels / max(picture.width, picture.height)
-    picture = resolved(picture, 1 / per_mm)
+    picture = marks.resolved(picture, 1 / per_mm)
     width, height = round(picture.width * per_mm), round(picture.height * per_mm)
     drawn = resvg_py.svg_to_bytes(
         svg_string=to_svg(picture, (width, height)),
@@ -210,7 +195,6 @@ class _Pen:
             self._canvas.drawPath(path, fill=is_filled, stroke=is_lined, fillMode=0)
 
     def _shade(self, path: Any, gradient: Gradient) -> None:
-        """Fills a path with a gradient, as dense as the fill is set to be."""
         shares = [stop.share for stop in gradient.stops]
         colors = [self._color(stop.color) for stop in gradient.stops]
         with self._state():
@@ -258,7 +242,7 @@ class _Pen:
         canvas.translate(*mark.at)
         canvas.rotate(mark.angle)
         width = canvas.stringWidth(mark.text, FAMILY, mark.size)
-        left = ANCHORS[mark.anchor] * width
+        left = marks.ANCHORS[mark.anchor] * width
         if mark.halo:
             with self._state():
                 self._text(mark, left, _WHITE, Ink(_WHITE, 0.22 * mark.size, is_round=True))

@@ -11,27 +11,10 @@ import numpy as np
 
 from aidl_lang.common.colors import css_color, hexadecimal, rgb
 from aidl_lang.common.prose import fixed, size_text
-from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
 from aidl_lang.export import marks
 from aidl_lang.export.job import ExportError, Job
-from aidl_lang.export.marks import (
-    LETTERS,
-    Area,
-    Curves,
-    Dot,
-    Frame,
-    Gradient,
-    Group,
-    Ink,
-    Mark,
-    Picture,
-    Stop,
-    Text,
-    corners,
-    themed,
-    widened,
-)
+from aidl_lang.export.marks import Area, Curves, Gradient, Group, Ink, Mark, Picture, Text, corners, widened
 from aidl_lang.export.overlay import explain, labels
 from aidl_lang.geometry.boolean import united, without
 from aidl_lang.geometry.curves import Bounds, Line, Piece, Vec, larger_side, union_bounds
@@ -65,31 +48,12 @@ DEVIATION = 0.05
 Size = tuple[float, float]
 
 
-@record()
-class _Row:
-    """Windows of one size along an axis: their number, their first edge and the step between them."""
-
-    count: int
-    first: float
-    step: float
-    window: float
-
-    @classmethod
-    def over(cls, low: float, high: float, window: float, overlap: float) -> _Row:
-        """Returns the fewest windows that cover the range, centred on it."""
-        step = window - overlap
-        count = max(1, math.ceil((high - low - overlap) / step - 1e-9))
-        return cls(count, (low + high - (count - 1) * step - window) / 2, step, window)
-
-    def start(self, index: int) -> float:
-        return self.first + index * self.step
-
-    def seams(self, overlap: float) -> list[float]:
-        """Returns the middles of the overlaps."""
-        return [self.start(k) + overlap / 2 for k in range(1, self.count)]
-
-    def quarters(self) -> list[float]:
-        return [self.start(k) + self.window * share for k in range(self.count) for share in (0.25, 0.75)]
+def _windows(low: float, high: float, window: float, overlap: float) -> tuple[int, Iterator[float]]:
+    """Returns the number of the fewest windows that cover a range, centred on it, and where they begin."""
+    step = window - overlap
+    count = max(1, math.ceil((high - low - overlap) / step - 1e-9))
+    first = (low + high - (count - 1) * step - window) / 2
+    return count, (first + k * step for k in range(count))
 
 
 def tiled(picture: Picture, page: Size, overlap: float = OVERLAP) -> list[Picture]:
@@ -100,25 +64,26 @@ def tiled(picture: Picture, page: Size, overlap: float = OVERLAP) -> list[Pictur
     window = page[0] - 2 * PAGE_MARGIN, page[1] - 2 * PAGE_MARGIN
     _check(page, window, overlap)
     left, bottom, right, top = picture.box
-    across = _Row.over(left, right, window[0], overlap)
-    down = _Row.over(-top, -bottom, window[1], overlap)  # rows count from the top
-    if across.count * down.count > MOST_PAGES:
-        message = f"{across.count * down.count} pages are more than {MOST_PAGES}"
+    columns, lefts = _windows(left, right, window[0], overlap)
+    rows, tops = _windows(-top, -bottom, window[1], overlap)  # rows count from the top
+    if columns * rows > MOST_PAGES:
+        message = f"{columns * rows} pages are more than {MOST_PAGES}"
         raise ExportError("E0924", message, "give a larger `--tile`")
-    crosses = [(x, -y) for x in across.seams(overlap) for y in down.quarters()]
-    crosses += [(x, -y) for x in across.quarters() for y in down.seams(overlap)]
+    xs, ys, half, shares = [*lefts], [*tops], overlap / 2, (0.25, 0.75)
+    crosses = [(x + half, -(y + window[1] * share)) for x in xs[1:] for y in ys for share in shares]
+    crosses += [(x + window[0] * share, -(y + half)) for x in xs for share in shares for y in ys[1:]]
     shapes = [[(mark, _Shape(mark)) for mark in group.marks] for group in picture.groups]
     found = []
-    for row, column in np.ndindex(down.count, across.count):
+    for row, column in np.ndindex(rows, columns):
         checkpoint()
-        x, y = across.start(column), -down.start(row)
+        x, y = xs[column], -ys[row]
         sight = (x, y - window[1], x + window[0], y)
         groups = [
             replace(group, marks=shown, clip=widened(sight, BLEED))
             for group, held in zip(picture.groups, shapes, strict=True)
             if (shown := tuple(mark for mark, shape in held if shape.meets(sight)))
         ]
-        if groups or across.count * down.count == 1:
+        if groups or columns * rows == 1:
             found.append((sight, groups, f"row {row + 1}, column {column + 1}"))
     made = []
     for k, (sight, groups, place) in enumerate(found, 1):
@@ -140,7 +105,6 @@ def _check(page: Size, window: Size, overlap: float) -> None:
 
 
 def _page_marks(sight: Bounds, crosses: Sequence[Vec], overlap: float, label: str) -> Iterator[Mark]:
-    """Yields the marks that help to join the pages: corners, crosses, a label and a scale."""
     left, bottom, right, top = sight
     ink = Ink(marks.PLAN, HAIRLINE)
     ticks: list[Piece] = []
@@ -177,13 +141,13 @@ class _Shape:
             case Curves():
                 self._lines = [piece_points(piece, DEVIATION) for piece in mark.pieces]
                 air = mark.ink.width / 2
-            case Frame():
+            case marks.Frame():
                 self._lines = [_outline(mark.box)]
                 air = mark.width / 2
             case Text():
                 self._lines = [_outline(mark.box)]
                 self._filled = self._lines
-            case Dot(at, radius):
+            case marks.Dot(at, radius):
                 self._lines = [np.array([at, at])]
                 air = radius
         self._air = air + DEVIATION
@@ -233,7 +197,7 @@ _OVER = ":over"
 
 def picture(job: Job) -> Picture:
     """Returns the drawing as a picture by the options."""
-    return themed(_whole(job) if job.options.sheet is None else _sheet(job), job.options.theme)
+    return marks.themed(_whole(job) if job.options.sheet is None else _sheet(job), job.options.theme)
 
 
 def _sheet(job: Job) -> Picture:
@@ -399,7 +363,7 @@ def _strokes(stroke: Stroke, size: float, fills: Mapping[str, str]) -> Iterator[
         yield from _filled(Region(stroke.faces), style, color, size, marks.AREA, stroke.whole)
         return
     if stroke.faces:
-        yield from (Area(face, color, None, LETTERS, _opacity(style)) for face in stroke.faces)
+        yield from (Area(face, color, None, marks.LETTERS, _opacity(style)) for face in stroke.faces)
         return
     ink = replace(_line(style, color, STROKE_WIDTH, size), opacity=_opacity(style))
     yield Curves(stroke.pieces, ink)
@@ -479,12 +443,12 @@ _STEPS = np.linspace(0.0, 1.0, 9)
 
 def gradient_of(shade: Shade, color: str, outline: Sequence[Piece]) -> Gradient:
     """Returns the fill of a colour in what has an outline, of which some may be hidden."""
-    stops = tuple(Stop(share, _toned(color, tone)) for share, tone in _LIGHT.get(shade.kind, ()))
+    stops = tuple(marks.Stop(share, _toned(color, tone)) for share, tone in _LIGHT.get(shade.kind, ()))
     left, bottom, right, top = union_bounds([piece.box for piece in outline])
     width, height = right - left, top - bottom
     if shade.way is None:
         center = (left + width / 2, bottom + height / 2)
-        fading = tuple(Stop(share, color, opacity) for share, opacity in _FADING)
+        fading = tuple(marks.Stop(share, color, opacity) for share, opacity in _FADING)
         return Gradient(center, center, fading, width / 2, height / width)
     if shade.kind == "ball":
         spot = (left + _SPOT[0] * width, bottom + _SPOT[1] * height)
@@ -496,9 +460,9 @@ def gradient_of(shade: Shade, color: str, outline: Sequence[Piece]) -> Gradient:
     start, end = (middle + (reach - middle @ ways) * ways for reach in (along.min(), along.max()))
     other = css_color([shade.kind])
     if shade.kind == "fade":
-        stops = (Stop(0.0, color), Stop(1.0, color, 0.0))
+        stops = (marks.Stop(0.0, color), marks.Stop(1.0, color, 0.0))
     elif other is not None:
-        stops = (Stop(0.0, color), Stop(1.0, other))
+        stops = (marks.Stop(0.0, color), marks.Stop(1.0, other))
     return Gradient((float(start[0]), float(start[1])), (float(end[0]), float(end[1])), stops)
 
 

@@ -100,36 +100,24 @@ PLAIN = Profile(
 """Red to cut and blue to engrave, on the layers of the program; nothing but what is asked for is filled."""
 
 
-def _of_machine(name: str, width: float, table: str) -> Profile:
-    """Returns a profile by a colour and a layer for each operation, and the width of all lines."""
-    looks = (Look(color, width, layer) for color, layer in (row.split() for row in table.split(", ")))
+_MACHINES = """
+lightburn 0.1 #000000 C00-fill #0000ff C01-engrave #00e000 C03-score #ff8000 C05-inner #a00000 C10-outer
+glowforge 0.1 #000000 fill #0000ff engrave #00ff00 score #ff0000 inner #ff00ff outer
+ponoko 0.01 #000000 area-engraving #ff0000 line-engraving #ff0000 line-engraving \
+    #0000ff cutting #0000ff cutting
+"""
+"""The width of all lines, and a colour and a layer for each operation: colours of LightBurn's palette, from
+the front of it to the back as they are carried out; colours that rise, by which Glowforge lists the steps.
+"""
+
+
+def _of_machine(row: str) -> Profile:
+    name, width, *said = row.split()
+    looks = (Look(color, float(width), layer) for color, layer in zip(said[::2], said[1::2], strict=True))
     return Profile(name, dict(zip(OPERATIONS, looks, strict=True)))
 
 
-PROFILES = {
-    made.name: made
-    for made in (
-        PLAIN,
-        # Colours of the program's palette, from the front of it to the back as they are carried out.
-        _of_machine(
-            "lightburn",
-            0.1,
-            "#000000 C00-fill, #0000ff C01-engrave, #00e000 C03-score, #ff8000 C05-inner, #a00000 C10-outer",
-        ),
-        # Steps are listed by colour: these rise.
-        _of_machine(
-            "glowforge",
-            0.1,
-            "#000000 fill, #0000ff engrave, #00ff00 score, #ff0000 inner, #ff00ff outer",
-        ),
-        _of_machine(
-            "ponoko",
-            0.01,
-            "#000000 area-engraving, #ff0000 line-engraving, #ff0000 line-engraving, "
-            "#0000ff cutting, #0000ff cutting",
-        ),
-    )
-}
+PROFILES = {made.name: made for made in (PLAIN, *map(_of_machine, _MACHINES.strip().splitlines()))}
 
 
 # --- Profiles of workshops in files of their own: TOML, with every key and value checked.

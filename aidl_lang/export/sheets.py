@@ -19,7 +19,7 @@ from aidl_lang.geometry.arcs import WIDEST, Slit, as_arcs, has_slivers, without_
 from aidl_lang.geometry.curves import union_bounds
 from aidl_lang.geometry.drawing import SLIT, Drawing, Stroke
 from aidl_lang.geometry.offsets import offset
-from aidl_lang.geometry.parts import Motion, Part, Size, alike, drawn, parts_of, smallest_size
+from aidl_lang.geometry.parts import Motion, Part, Size, alike, drawn, parts_of, smallest_size, thickness_of
 from aidl_lang.geometry.region import Face, Loop, Region, length
 from aidl_lang.geometry.sheets import NestingError, laid_out
 from aidl_lang.geometry.solved import SolvedModel
@@ -83,6 +83,7 @@ class CutList:
 def cut_list(job: Job) -> CutList:
     found, _ = parts_of(job.model.root, job.drawing)
     root = f"{job.model.root.path}."
+    said = job.options.thickness
     members = Counter(_stem(body.path.removeprefix(root)) for body in job.drawing.bodies)
     items = []
     for number, group in enumerate(sorted(alike(found), key=lambda group: group[0].stock), 1):
@@ -92,21 +93,10 @@ def cut_list(job: Job) -> CutList:
         # Arrays all of one item are named without indices.
         own = dict.fromkeys(s if here[s := _stem(n)] == members[s] else n for n in names)
         followed = outlines(job.model, drawn(job.drawing, [part]), job.options.followed or PLAIN)
-        cuts = [piece for outline in followed if outline.operation in CUTS for piece in outline.pieces]
-        thickness = part.body.style.thickness
-        items.append(
-            Item(
-                number,
-                first_few(own, NAMED),
-                part,
-                paths,
-                sum(p.body.style.quantity for p in group),
-                job.options.thickness if thickness is None else thickness,
-                smallest_size(part),
-                part.body.region.area,
-                sum(map(length, cuts)),
-            )
-        )
+        cut = sum(length(p) for outline in followed if outline.operation in CUTS for p in outline.pieces)
+        quantity, thickness = sum(p.body.style.quantity for p in group), thickness_of(part.body, said)
+        size, area = smallest_size(part), part.body.region.area
+        items.append(Item(number, first_few(own, NAMED), part, paths, quantity, thickness, size, area, cut))
     return CutList(tuple(items), {path: item.number for item in items for path in item.paths})
 
 
@@ -274,22 +264,10 @@ def to_csv(jobs: Sequence[Job]) -> Exported:
 
 def pages(jobs: Sequence[Job]) -> list[Picture]:
     found = jobs[0].cut_list
-    return [
-        *_pages(
-            "cut-list",
-            "Parts",
-            ("No.", "Part", "Qty", "Material", "Thick", "Width", "Height", "Area", "Cut"),
-            [_line(item, _SHOWN) for item in found.items],
-            frozenset({0, 2, 4, 5, 6, 7, 8}),
-        ),
-        *_pages(
-            "sheets",
-            "Sheets",
-            ("Sheet", "Material", "Thick", "Pieces", "Numbers", "Used %", "Cut"),
-            list(_sheets(found, jobs, _SHOWN)),
-            frozenset({0, 2, 3, 5, 6}),
-        ),
-    ]
+    parts, sheets = [_line(item, _SHOWN) for item in found.items], list(_sheets(found, jobs, _SHOWN))
+    of_parts = ("No.", "Part", "Qty", "Material", "Thick", "Width", "Height", "Area", "Cut")
+    of_sheets = ("Sheet", "Material", "Thick", "Pieces", "Numbers", "Used %", "Cut")
+    return [*_pages("cut-list", "Parts", of_parts, parts), *_pages("sheets", "Sheets", of_sheets, sheets)]
 
 
 def _line(item: Item, decimals: int) -> tuple[str, ...]:
@@ -322,10 +300,11 @@ def _number(value: float | None, decimals: int) -> str:
 
 
 def _pages(
-    name: str, title_of: str, heads: tuple[str, ...], rows: Sequence[tuple[str, ...]], numeric: frozenset[int]
+    name: str, title_of: str, heads: tuple[str, ...], rows: Sequence[tuple[str, ...]]
 ) -> Iterator[Picture]:
     from aidl_lang.export.drafting.tables import LARGE, WIDTH, Table, written
 
+    numeric = frozenset(k for k, head in enumerate(heads) if head not in ("Part", "Material", "Numbers"))
     for first in range(0, len(rows), _ROWS):
         table = Table(name, heads, tuple(rows[first : first + _ROWS]), numeric)
         width, height = WIDTH + 2 * _MARGIN, table.height + _TITLE + 2 * _MARGIN

@@ -9,7 +9,6 @@ import sys
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
-from functools import partial
 from importlib import import_module
 from types import ModuleType
 from typing import Any
@@ -39,37 +38,32 @@ def svgwrite() -> Any:
 
 @contextmanager
 def _loaded_later(name: str, *functions: str) -> Iterator[None]:
-    """Replaces a module that is not loaded; functions imported from it load it when called."""
+    """Replaces a module that is not loaded. Functions imported from it load it when they are called, and a
+    thread that asks it for more meanwhile has the real one.
+    """
     if name in sys.modules:
         yield
         return
-    stand_in = sys.modules[name] = _StandIn(name, functions)
+    stand_in: Any = ModuleType(name)
+
+    def give_way() -> None:
+        if sys.modules.get(name) is stand_in:
+            del sys.modules[name]
+
+    def real(wanted: str) -> Any:
+        if wanted.startswith("__"):
+            raise AttributeError(wanted)
+        give_way()
+        return getattr(import_module(name), wanted)
+
+    for function in functions:
+        setattr(stand_in, function, lambda *args, of=function, **named: real(of)(*args, **named))
+    stand_in.__getattr__ = real
+    sys.modules[name] = stand_in
     try:
         yield
     finally:
-        stand_in.give_way()
-
-
-class _StandIn(ModuleType):
-    """A placeholder module that gives way to the real one when another thread asks it for more."""
-
-    def __init__(self, name: str, functions: Sequence[str]) -> None:
-        super().__init__(name)
-        for function in functions:
-            setattr(self, function, partial(self._call, function))
-
-    def _call(self, function: str, *args: Any, **named: Any) -> Any:
-        return getattr(import_module(self.__name__), function)(*args, **named)
-
-    def __getattr__(self, name: str) -> Any:
-        if name.startswith("__"):
-            raise AttributeError(name)
-        self.give_way()
-        return getattr(import_module(self.__name__), name)
-
-    def give_way(self) -> None:
-        if sys.modules.get(self.__name__) is self:
-            del sys.modules[self.__name__]
+        give_way()
 
 
 # --- SVG path data from exact pieces. Coordinates turn upside down: SVG counts y downwards.

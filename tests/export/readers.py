@@ -56,12 +56,10 @@ class Loop:
 
 @dataclass
 class Body:
-    """The loops of a body, and how many solids of which volume it is, where the format has them."""
+    """The loops of a body, and how many faces they bound, where the format has them."""
 
     loops: list[Loop] = field(default_factory=list)
     faces: int = 0
-    solids: int = 0
-    volume: float = 0.0
 
     @property
     def area(self) -> float:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import re
+from functools import cache
 
 import ezdxf
 import pytest
@@ -11,11 +12,11 @@ from ezdxf.document import Drawing as Document
 from PIL import Image
 from pypdfium2 import PdfDocument
 
-from aidl_lang.export import export
-from aidl_lang.export.job import Exported, Job, Options
+from aidl_lang.export.job import Exported
 from aidl_lang.export.marks import LIGHT, OUTLINE
+from aidl_lang.export.profiles import PROFILES
 from tests.compiled import compiled
-from tests.export.colours import near
+from tests.export.making import near, written
 
 PROGRAM = """
 param thin = 0.23mm
@@ -36,13 +37,6 @@ assembly a {
 """
 
 
-def written(suffix: str, program: str = PROGRAM, **options: object) -> Exported:
-    made = compiled(program)
-    assert made.model is not None
-    assert made.drawing is not None
-    return export(Job(made.model, made.drawing, options=Options(**options)), suffix)  # type: ignore[arg-type]
-
-
 def group(svg: str, name: str) -> str:
     found = re.search(rf'<g [^>]*id="{name}".*?</g>', svg, re.DOTALL)
     assert found is not None
@@ -52,7 +46,7 @@ def group(svg: str, name: str) -> str:
 @pytest.mark.parametrize("length", [0.01, 100])
 def test_dashes_that_no_pixel_shows_are_a_paler_line(length: float) -> None:
     program = f"@dash({length}, {3 * length}) @stroke(1000) drawing d {{ one = line((0, 0), (500m, 0)) }}"
-    picture = Image.open(io.BytesIO(written(".png", program, pixels=400).data)).convert("L")
+    picture = Image.open(io.BytesIO(written(program, ".png", pixels=400).data)).convert("L")
     middle = picture.getpixel((200, picture.height // 2))
     assert isinstance(middle, int)
     assert 190 < middle < 220
@@ -62,7 +56,7 @@ def test_dashes_that_no_pixel_shows_are_a_paler_line(length: float) -> None:
 
 
 def document(**options: object) -> Document:
-    return ezdxf.read(io.StringIO(written(".dxf", **options).data.decode()))
+    return ezdxf.read(io.StringIO(written(PROGRAM, ".dxf", **options).data.decode()))
 
 
 def test_dxf_has_the_nearest_weight_and_a_linetype_for_each_pattern() -> None:
@@ -86,7 +80,7 @@ def test_a_cutter_follows_whole_hairlines() -> None:
     looks = {(e.dxf.lineweight, e.dxf.linetype) for e in document(kerf=0.1).modelspace()}
     assert looks == {(-1, "BYLAYER")}
     for options in ({"cut": True}, {"theme": "cutter"}):
-        svg = written(".svg", **options).data.decode()
+        svg = written(PROGRAM, ".svg", **options).data.decode()
         assert set(re.findall(r'stroke-width="([^"]*)"', svg)) == {"0.1"}
         assert "dash" not in svg
         assert "opacity" not in svg
@@ -99,7 +93,7 @@ def test_a_geometry_has_its_own_colour_in_a_dxf() -> None:
         @color("blue") b = line((5, 0), (9, 0))
     }
     """
-    made = ezdxf.read(io.StringIO(written(".dxf", program).data.decode()))
+    made = ezdxf.read(io.StringIO(written(program, ".dxf").data.decode()))
     assert [e.rgb for e in made.modelspace()] == [(255, 0, 0), (0, 0, 255)]
 
 
@@ -121,8 +115,8 @@ assembly a {
 
 def test_contours_are_cut_without_an_outline_too() -> None:
     for options in ({"cut": True}, {"theme": "cutter"}):
-        assert 'stroke-width="0.1"' in group(written(".svg", BALL, **options).data.decode(), "a.shine:outer")
-    made = written(".dxf", BALL)
+        assert 'stroke-width="0.1"' in group(written(BALL, ".svg", **options).data.decode(), "a.shine:outer")
+    made = written(BALL, ".dxf")
     entities = list(ezdxf.read(io.StringIO(made.data.decode())).modelspace())
     assert sorted(e.dxftype() for e in entities) == ["CIRCLE", "CIRCLE", "LINE"]
     assert sorted(e.dxf.lineweight for e in entities) == [-1, -1, 40]
@@ -142,12 +136,12 @@ def test_outlines_are_a_darker_tone_of_the_fill() -> None:
         @color("white") solid pale { body = square(center: fixed((30, 0)), size: 5) }
     }
     """
-    svg = written(".svg", program).data.decode()
+    svg = written(program, ".svg").data.decode()
     found = dict(re.findall(r'data-path="a\.(\w+)".*?stroke="([^"]*)"', svg, re.DOTALL))
     assert found.pop("plain") == OUTLINE
     assert found == {"dark": "#000000", "toned": "#6e3716", "pale": "#808080"}
     for theme, line in (("blueprint", "#eaf2ff"), ("ink", "#000000"), ("cutter", "#ff0000")):
-        lines = re.findall(r'stroke="(#[^"]*)"', written(".svg", program, theme=theme).data.decode())
+        lines = re.findall(r'stroke="(#[^"]*)"', written(program, ".svg", theme=theme).data.decode())
         assert set(lines) == {line}
 
 
@@ -156,7 +150,7 @@ def test_a_part_more_at_the_end_changes_no_other_part() -> None:
         solids = "".join(
             f"solid s{k} {{ b = square(center: fixed(({9 * k}, 0)), size: 5) }}\n" for k in range(count)
         )
-        return re.findall(r' fill="(#[^"]*)"', written(".svg", f"assembly a {{ {solids} }}").data.decode())
+        return re.findall(r' fill="(#[^"]*)"', written(f"assembly a {{ {solids} }}", ".svg").data.decode())
 
     assert fills(5)[:4] == fills(4)
     assert len(set(fills(5))) == 5
@@ -177,7 +171,7 @@ solid a {
 
 @pytest.mark.parametrize("suffix", [".dxf", ".stl", ".step", ".3mf"])
 def test_seams_are_told_where_they_have_no_place(suffix: str) -> None:
-    (note,) = [n for n in written(suffix, "@thickness(2)" + TURRET).notes if n.code == "N0741"]
+    (note,) = [n for n in written("@thickness(2)" + TURRET, suffix).notes if n.code == "N0741"]
     assert note.message.startswith("`@edges` counts for nothing in this file: ")
 
 
@@ -185,7 +179,7 @@ def test_a_solid_with_a_look_in_a_solid_is_an_area_and_has_no_seams() -> None:
     def svg(looks: str) -> str:
         inner = f"{looks} solid knob {{ rim = circle(center: fixed((0, 0)), radius: 6) }}"
         plate = "body = rectangle(center: fixed((0, 0)), width: 40, height: 20)"
-        return written(".svg", f"solid a {{ {plate}\n {inner} }}").data.decode()
+        return written(f"solid a {{ {plate}\n {inner} }}", ".svg").data.decode()
 
     assert 'class="seam"' in svg("")
     assert 'class="seam"' not in svg('@color("gold")')
@@ -202,12 +196,6 @@ TOLD: list[tuple[str, dict[str, object], str]] = [
     (".svg", {"cut": True}, f"`@stroke`, `@dash` and `@opacity` count for nothing in this file: {CUTS}"),
     (".stl", {}, "`@stroke`, `@dash` and `@opacity` count for nothing in this file: STL holds bare shapes"),
     (
-        ".step",
-        {},
-        "`@stroke` and `@dash` count for nothing in this file: "
-        "STEP holds shapes with their colours, and its lines no width and no areas",
-    ),
-    (
         ".3mf",
         {},
         "`@stroke` and `@dash` count for nothing in this file: "
@@ -218,7 +206,7 @@ TOLD: list[tuple[str, dict[str, object], str]] = [
 
 @pytest.mark.parametrize(("suffix", "options", "said"), TOLD)
 def test_what_a_file_cannot_hold_is_told_once(suffix: str, options: dict[str, object], said: str) -> None:
-    (note,) = [note for note in written(suffix, **options).notes if note.code == "N0741"]
+    (note,) = [note for note in written(PROGRAM, suffix, **options).notes if note.code == "N0741"]
     assert note.message == said
     assert note.span is not None
     assert note.span.text.startswith("@color")
@@ -227,14 +215,14 @@ def test_what_a_file_cannot_hold_is_told_once(suffix: str, options: dict[str, ob
 
 @pytest.mark.parametrize("suffix", [".svg", ".png", ".pdf", ".json"])
 def test_pictures_hold_it_all(suffix: str) -> None:
-    assert written(suffix).notes == ()
+    assert written(PROGRAM, suffix).notes == ()
 
 
 def test_the_pdf_is_named_after_what_the_program_says_it_is() -> None:
     program = "/// A square.\n/// It has four corners.\nsolid plate { body = square(size: 30) }"
-    assert PdfDocument(written(".pdf", program).data).get_metadata_dict()["Title"] == "A square."
+    assert PdfDocument(written(program, ".pdf").data).get_metadata_dict()["Title"] == "A square."
     assert (
-        PdfDocument(written(".pdf", program[program.index("solid") :]).data).get_metadata_dict()["Title"]
+        PdfDocument(written(program[program.index("solid") :], ".pdf").data).get_metadata_dict()["Title"]
         == "plate"
     )
 
@@ -242,9 +230,15 @@ def test_the_pdf_is_named_after_what_the_program_says_it_is() -> None:
 def seen(suffix: str, program: str) -> Image.Image:
     """What is seen of a drawing 100 mm wide, with its margin: ten pixels for each millimetre."""
     if suffix == ".png":
-        return Image.open(io.BytesIO(written(suffix, program, pixels=1060).data)).convert("RGB")
-    page = PdfDocument(written(suffix, program).data)[0]
+        return Image.open(io.BytesIO(written(program, suffix, pixels=1060).data)).convert("RGB")
+    page = PdfDocument(written(program, suffix).data)[0]
     return page.render(scale=10 / 72 * 25.4).to_pil().convert("RGB")
+
+
+def at(image: Image.Image, x: float, y: float, wide: float = 106) -> tuple[int, int, int]:
+    """The colour at so many millimetres from the middle of a picture."""
+    scale, middle = image.width / wide, (image.width / 2, image.height / 2)
+    return image.getpixel((round(middle[0] + x * scale), round(middle[1] - y * scale)))  # type: ignore
 
 
 # --- Letters -----------------------------------------------------------------------------------------
@@ -309,7 +303,7 @@ assembly a {
 
 
 def test_letters_are_filled_and_their_counters_open() -> None:
-    filled, outlined = re.findall("<path .*?/>", group(written(".svg", LETTERS).data.decode(), "a.marks"))
+    filled, outlined = re.findall("<path .*?/>", group(written(LETTERS, ".svg").data.decode(), "a.marks"))
     assert 'fill="red" fill-rule="evenodd" stroke="none"' in filled
     assert filled.count("Z") == 2
     assert 'fill="none" stroke="red"' in outlined
@@ -335,27 +329,15 @@ assembly a {
 
 
 def test_gaps_lie_over_what_is_behind_and_under_what_is_in_front() -> None:
-    image = Image.open(io.BytesIO(written(".png", HALOED, pixels=1400).data)).convert("RGB")
-    scale = image.width / (140 + 2 * 0.03 * 140)
-
-    def at(x: float, y: float) -> tuple[int, int, int]:
-        found = image.getpixel(
-            (round(image.width / 2 + (x - 20) * scale), round(image.height / 2 - y * scale))
-        )
-        assert isinstance(found, tuple)
-        return found
-
+    image = seen(".png", HALOED)
     white, blue, yellow = (255, 255, 255), (0, 0, 255), (255, 255, 0)
-    assert near(at(-46, 0), blue)
-    assert near(at(-43, 0), white)
-    assert near(at(-37.5, 0), yellow)
-    assert near(at(-32, 0), white)  # in the ring
-    assert near(at(-20, 0), blue)
-    assert near(at(-20, 15.4), yellow)  # beside what is drawn on it
-    assert near(at(16.2, 0), white)
-    assert near(at(23.8, 0), white)
-    assert near(at(14, 0), blue)
-    assert near(at(26, 0), blue)
+    for color, places in (
+        (blue, [(-46, 0), (-20, 0), (14, 0), (26, 0)]),
+        (white, [(-43, 0), (-32, 0), (16.2, 0), (23.8, 0)]),  # in the ring, too
+        (yellow, [(-37.5, 0), (-20, 15.4)]),  # beside what is drawn on it
+    ):
+        for x, y in places:
+            assert near(at(image, x - 20, y, 1.06 * 140), color), (x, y)
 
 
 SHADOWED = """
@@ -374,19 +356,15 @@ assembly a {
 
 @pytest.mark.parametrize("suffix", [".png", ".pdf"])
 def test_a_shadow_is_one_of_all_that_casts_it_and_a_veil_lies_beyond_its_body(suffix: str) -> None:
-    scale, margin, image = 10, 0.03 * 100, seen(suffix, SHADOWED)
-
-    def at(x: float, y: float) -> object:
-        return image.getpixel((round((x + 50 + margin) * scale), round((30 + margin - y) * scale)))
-
-    assert near(at(-40, 0), (0, 0, 255))
-    assert near(at(22, -28), (0, 0, 153))  # of both parts: once as dark
-    assert near(at(2, -28), (0, 0, 153))
-    assert near(at(-2, -28), (0, 0, 255))
-    assert near(at(-12, 0), (128, 0, 128))  # the glow, on the wall
-    assert near(at(-8, 0), (255, 128, 0))
-    assert near(at(12, 0), (255, 255, 0))  # in front of it
-    assert "fill-opacity" not in written(".svg", SHADOWED, theme="blueprint").data.decode()
+    image = seen(suffix, SHADOWED)
+    assert near(at(image, -40, 0), (0, 0, 255))
+    assert near(at(image, 22, -28), (0, 0, 153))  # of both parts: once as dark
+    assert near(at(image, 2, -28), (0, 0, 153))
+    assert near(at(image, -2, -28), (0, 0, 255))
+    assert near(at(image, -12, 0), (128, 0, 128))  # the glow, on the wall
+    assert near(at(image, -8, 0), (255, 128, 0))
+    assert near(at(image, 12, 0), (255, 255, 0))  # in front of it
+    assert "fill-opacity" not in written(SHADOWED, ".svg", theme="blueprint").data.decode()
 
 
 # --- Shade -----------------------------------------------------------------------------------------
@@ -405,7 +383,7 @@ def _brightness(attributes: str, *, frame: str = "", suffix: str = ".png") -> di
     """The brightness of a grey square, seen at the left, in its middle, on the right, above and below."""
     square = "plate = rectangle(center: fixed((0, 0)), width: 40, height: 40)"
     program = f'@stroke(none) assembly a {{ @color("gray") {attributes} solid s {frame} {{ {square} }} }}'
-    data = written(suffix, program, pixels=200).data if suffix == ".png" else written(suffix, program).data
+    data = written(program, suffix, pixels=200).data if suffix == ".png" else written(program, suffix).data
     image = (
         Image.open(io.BytesIO(data)) if suffix == ".png" else PdfDocument(data)[0].render(scale=3).to_pil()
     )
@@ -414,51 +392,33 @@ def _brightness(attributes: str, *, frame: str = "", suffix: str = ".png") -> di
 
 
 @pytest.mark.parametrize("suffix", [".png", ".pdf"])
-def test_a_round_bar_is_lit_from_the_left(suffix: str) -> None:
-    seen = _brightness("@shade(round)", suffix=suffix)
-    assert seen["left"] > seen["middle"] > seen["right"]
-    assert seen["above"] == pytest.approx(seen["below"], abs=2)
+def test_light_and_shade_go_their_ways(suffix: str) -> None:
+    """Half of the way out of the middle, 0.3 of the square, shows 0.4 of it: 0.78 at 0.3, and 0.3 at 0.6."""
+    ways = ("@shade(round)", '@shade("white", 0deg)', "@shade(fade, 0deg)", "@shade(fade)")
+    bar, white, fading, glow = (_brightness(way, suffix=suffix) for way in ways)
+    assert bar["left"] > bar["middle"] > bar["right"]
+    assert bar["above"] == pytest.approx(bar["below"], abs=2)
+    assert white["left"] < white["middle"] < white["right"]
+    assert white["right"] > 220
+    assert fading["left"] < fading["middle"] < fading["right"]
+    assert fading["middle"] == pytest.approx((128 + 255) / 2, abs=4)
+    assert fading["above"] == pytest.approx(fading["below"], abs=2)
+    assert glow["middle"] == pytest.approx(128, abs=5)
+    assert glow["left"] == pytest.approx(255 - 127 * (0.78 - 0.48 / 3), abs=5)
+    assert glow["left"] < glow["right"] == pytest.approx(glow["below"], abs=3)
 
 
 @pytest.mark.parametrize("frame", ["", "rotated 180deg", "at (3, 4)"])
 def test_light_comes_from_one_side_however_a_part_is_turned(frame: str) -> None:
-    assert _brightness("@shade(round)", frame=frame) == pytest.approx(_brightness("@shade(round)"), abs=2)
-    assert _brightness("@shade(slope)", frame=frame) == pytest.approx(_brightness("@shade(slope)"), abs=2)
-
-
-def test_shade_goes_along_with_a_part_that_is_turned() -> None:
-    assert _brightness("@shade(round)", frame="rotated 90deg") == pytest.approx(
-        _brightness("@shade(round, 90deg)"), abs=2
-    )
-
-
-@pytest.mark.parametrize("suffix", [".png", ".pdf"])
-def test_a_fill_goes_over_into_another_colour(suffix: str) -> None:
-    seen = _brightness('@shade("white", 0deg)', suffix=suffix)
-    assert seen["left"] < seen["middle"] < seen["right"]
-    assert seen["right"] > 220
-
-
-@pytest.mark.parametrize("suffix", [".png", ".pdf"])
-def test_a_fill_fades_along_a_way(suffix: str) -> None:
-    seen = _brightness("@shade(fade, 0deg)", suffix=suffix)
-    assert seen["left"] < seen["middle"] < seen["right"]
-    assert seen["middle"] == pytest.approx((128 + 255) / 2, abs=4)
-    assert seen["above"] == pytest.approx(seen["below"], abs=2)
-
-
-@pytest.mark.parametrize("suffix", [".png", ".pdf"])
-def test_a_fill_fades_out_of_its_middle(suffix: str) -> None:
-    """Half of the way, 0.3 of the square, shows 0.4 of it: 0.78 at 0.3 and 0.3 at 0.6 of the way."""
-    seen = _brightness("@shade(fade)", suffix=suffix)
-    assert seen["middle"] == pytest.approx(128, abs=5)
-    assert seen["left"] == pytest.approx(255 - 127 * (0.78 - 0.48 / 3), abs=5)
-    assert seen["left"] < seen["right"] == pytest.approx(seen["below"], abs=3)
+    for shade in ("@shade(round)", "@shade(slope)"):
+        assert _brightness(shade, frame=frame) == pytest.approx(_brightness(shade), abs=2)
+    turned = _brightness("@shade(round)", frame="rotated 90deg")
+    assert turned == pytest.approx(_brightness("@shade(round, 90deg)"), abs=2)
 
 
 def test_what_fades_is_flat_where_its_box_is() -> None:
     program = "@stroke(none) @shade(fade) solid s { pool = ellipse(center: fixed((0, 0)), rx: 40, ry: 10) }"
-    image = Image.open(io.BytesIO(written(".png", program, pixels=400).data)).convert("L")
+    image = Image.open(io.BytesIO(written(program, ".png", pixels=400).data)).convert("L")
     width, height = image.size
     inner = int(width * 0.15), int(height * 0.15)
     level = image.getpixel((width // 2 + int(0.3 * (width - 2 * inner[0])), height // 2))
@@ -473,10 +433,10 @@ def test_shade_ends_where_it_is_said() -> None:
         @shade(none) solid c { p = rectangle(center: fixed((9, 0)), width: 9, height: 9) }
     }
     """
-    svg = written(".svg", program).data.decode()
+    svg = written(program, ".svg").data.decode()
     assert "url(#shade-1)" in group(svg, "a.b")
     assert "url(" not in group(svg, "a.c")
-    assert "url(" not in written(".svg", program, theme="ink").data.decode()
+    assert "url(" not in written(program, ".svg", theme="ink").data.decode()
 
 
 @pytest.mark.parametrize("color", ["gold", "skyblue", "#a7bcd6"])
@@ -489,7 +449,7 @@ def test_an_area_of_a_solid_may_have_an_outline_of_its_own(color: str) -> None:
         {said} @stroke(3mm) disc = circle(center: fixed((20, 10)), radius: 9)
     }}
     """
-    svg = written(".svg", text).data.decode()
+    svg = written(text, ".svg").data.decode()
     assert re.search(rf'fill="{color}"[^>]*stroke-width="3"', svg)
 
 
@@ -501,7 +461,7 @@ def test_a_colour_of_its_own_does_not_go_over_into_another(shade: str, is_shaded
         @color("gold") sun = circle(center: fixed((20, 10)), radius: 9)
     }}
     """
-    assert (b'fill="gold"' in written(".svg", text).data) != is_shaded
+    assert (b'fill="gold"' in written(text, ".svg").data) != is_shaded
 
 
 @pytest.mark.parametrize("arguments", ["", "3", '"nocolour"', "round, 3mm", "round, 1, 2"])
@@ -534,7 +494,51 @@ assembly a {
 
 def test_letters_without_a_colour_of_their_own_can_be_read_on_what_they_lie_on() -> None:
     """Whether they are written in what they lie on or beside it."""
-    svg = written(".svg", INSCRIBED).data.decode()
+    svg = written(INSCRIBED, ".svg").data.decode()
     fills = re.findall(r'class="letters".* fill="(#?\w+)"', svg)
     light, dark = LIGHT, OUTLINE
     assert fills == [light, dark, light, dark, "dimgray"]
+
+
+PLATE = """\
+@thickness(6mm) @color("teal") {said}
+solid plate {{
+    body = rectangle(center: origin, width: 60, height: 30)
+    knob = circle(center: fixed((30, 0)), radius: 8)
+    {depth} hole seat {{ rim = circle(center: fixed((-15, 0)), radius: 5) }}
+    drawing mark {{ line = line(fixed((-5, -10)), fixed((20, 10))) }}
+}}
+"""
+LOOKS = ("@stroke(1mm)", "@dash(3, 1)", "@opacity(0.5)", "@shade(round)", "@edges(seams)", "@stroke(none)")
+DEPTHS = ("@depth(2mm)", "@depth(2mm, 90deg)")
+FILES = (".svg", ".pdf", ".png", ".dxf", ".step", ".stl", ".3mf", "cutter.svg", "cutter.dxf")
+
+
+@cache
+def saying(said: str, name: str) -> Exported:
+    text = PLATE.format(said="", depth=said) if said in DEPTHS else PLATE.format(said=said, depth="")
+    cutter, _, suffix = name.rpartition(".")
+    return written(text, f".{suffix}", profile=PROFILES["lightburn"] if cutter else None, pixels=400)
+
+
+@pytest.mark.parametrize("name", FILES)
+@pytest.mark.parametrize("said", [*LOOKS, *DEPTHS])
+def test_it_is_in_the_file_or_told(said: str, name: str) -> None:
+    told = {note.code for note in saying(said, name).notes}
+    is_there = saying(said, name).data != saying("", name).data
+    if said in DEPTHS:
+        assert is_there
+        assert ("N0756" in told) == (name.endswith(".dxf") or name.startswith("cutter"))
+    else:
+        assert is_there or "N0741" in told
+
+
+def test_the_colour_of_an_area_with_an_outline_of_its_own_is_told_too() -> None:
+    text = """
+    @color("blue") @thickness(2mm) solid s {
+        body = rectangle(center: fixed((0, 0)), width: 40, height: 20)
+        @color("gold") @stroke(1mm) disc = circle(center: fixed((5, 0)), radius: 4)
+    }
+    """
+    (note,) = [n for n in written(text, ".3mf").notes if n.code == "N0741"]
+    assert note.message.startswith("`@stroke` and `@color(…)` count for nothing in this file")

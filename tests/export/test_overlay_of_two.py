@@ -13,7 +13,7 @@ from svgelements import Close, Line, Move, Path
 
 import aidl_lang
 from aidl_lang.export.comparison import Comparison
-from aidl_lang.export.comparison.picture import overlay
+from aidl_lang.export.comparison.showing import overlay
 from aidl_lang.export.marks import Area, Curves, Frame
 from aidl_lang.export.svg import to_svg
 from tests.amount import tries

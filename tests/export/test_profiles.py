@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import io
 import re
-from functools import cache
 
 import ezdxf
 import pytest
@@ -14,11 +13,10 @@ from shapely import Polygon, unary_union
 from svgelements import SVG
 from svgelements import Path as SvgPath
 
-from aidl_lang import pipeline
 from aidl_lang.common.diagnostics import Diagnostic
-from aidl_lang.common.source import SourceFile
-from aidl_lang.export.job import ExportError, Options
+from aidl_lang.export.job import ExportError
 from aidl_lang.export.profiles import OPERATIONS, PROFILES, Profile, parsed
+from tests.export.making import written
 
 PLATE = """\
 assembly tag {
@@ -35,19 +33,10 @@ assembly tag {
     }
 }
 """
-INCH = 25.4
 
 
-@cache
-def compiled(text: str = PLATE) -> pipeline.Compiled:
-    found = pipeline.compile(SourceFile("tag.aidl", text))
-    assert found.ok, found.diagnostics
-    return found
-
-
-def svg_paths(text: str, profile: Profile) -> list[SvgPath]:
-    data = compiled(text).export(".svg", Options(profile=profile))
-    svg = SVG.parse(io.BytesIO(data), ppi=INCH)
+def svg_paths(text: str, profile: Profile, **options: object) -> list[SvgPath]:
+    svg = SVG.parse(io.BytesIO(written(text, ".svg", profile=profile, **options).data), ppi=25.4)
     return list(svg.elements(lambda e: isinstance(e, SvgPath)))
 
 
@@ -63,7 +52,7 @@ def in_svg(text: str, profile: Profile) -> list[tuple[str, str, bool]]:
 
 
 def document(text: str, profile: Profile, **options: str) -> Document:
-    data = compiled(text).export(".dxf", Options(profile=profile, **options))
+    data = written(text, ".dxf", profile=profile, **options).data
     found = ezdxf.read(io.StringIO(data.decode("cp1252" if options else "utf-8")))
     assert not found.audit().errors
     return found
@@ -158,7 +147,7 @@ def test_a_file_of_ones_own() -> None:
     found = document(text, profile)
     assert found.layers.get("OUT").dxf.lineweight == 5
     assert {e.dxf.layer for e in found.modelspace()} == {"OUT", "C12", "score", "engrave", "inner", "fill"}
-    assert compiled(text).exported(".svg", Options(profile=profile)).notes == ()
+    assert written(text, ".svg", profile=profile).notes == ()
 
 
 WRONG = {
@@ -220,7 +209,7 @@ def test_a_wrong_file_is_told(text: str) -> None:
 
 
 def notes(text: str, **options: object) -> list[Diagnostic]:
-    return list(compiled(text).exported(".svg", Options(**options)).notes)  # type: ignore[arg-type]
+    return list(written(text, ".svg", **options).notes)
 
 
 def test_layers_that_the_profile_does_not_know() -> None:
@@ -257,13 +246,9 @@ def test_lines_that_enclose_no_area() -> None:
 def test_letters_over_the_edge_of_a_part_are_areas_up_to_there() -> None:
     text = (
         "assembly a { @detached solid p { r = rectangle(center: fixed((0, 0)), width: 30, height: 20) }"
-        ' drawing d { t = text("II", center: fixed((13.2, 0)), height: 10, width: 12) } }'
+        ' drawing d { t = text("II", center: fixed((13.2, 0)), height: 10) } }'
     )
-    text = text.replace(", height: 10, width: 12", ", height: 10")
-    result = compiled(text)
-    made = result.exported(".svg", Options(profile=PROFILES["glowforge"], sheet=(60, 40)))
-    svg = SVG.parse(io.BytesIO(made.data), ppi=INCH)
-    paths = list(svg.elements(lambda e: isinstance(e, SvgPath)))
+    paths = svg_paths(text, PROFILES["glowforge"], sheet=(60, 40))
     (plate,) = [p.bbox() for p in paths if p.values["data-operation"] == "outer"]
     drawn = [p for p in paths if p.values["data-path"] == "a.d"]
     assert {p.values["data-operation"] for p in drawn} == {"fill"}
@@ -273,7 +258,7 @@ def test_letters_over_the_edge_of_a_part_are_areas_up_to_there() -> None:
 
 def test_no_colour_of_the_program_reaches_a_machine_that_goes_by_colour() -> None:
     text = PLATE.replace("solid plate", '@color("crimson") solid plate')
-    data = compiled(text).export(".svg", Options(profile=PROFILES["ponoko"])).decode()
+    data = written(text, ".svg", profile=PROFILES["ponoko"]).data.decode()
     assert set(re.findall('(?:fill|stroke)="(#[^"]*)"', data)) == {"#000000", "#ff0000", "#0000ff"}
 
 

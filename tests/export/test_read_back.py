@@ -1,23 +1,32 @@
-"""Every example in every format, read back by a reader that is not ours, against the JSON."""
+"""Every example in every format, read back by a reader that is not ours, against the JSON; and the same in
+every process, whatever the seed of its hashes and whatever it wrote before.
+"""
 
 from __future__ import annotations
 
 import io
 import json
 import math
+import os
+import subprocess
+import sys
 from functools import cache
+from pathlib import Path
 from typing import Any
 
+import ezdxf
 import numpy as np
 import pytest
 from PIL import Image
 from shapely.geometry import shape
 from shapely.ops import unary_union
 
+import aidl_lang
 from aidl_lang import Model
 from aidl_lang.export.job import Options
 from tests import compiled
 from tests.amount import TRIES_ALL, some
+from tests.documents import ROOT
 from tests.export import readers
 from tests.export.readers import read_meshes
 
@@ -163,3 +172,27 @@ def test_nothing_of_the_examples_is_lost():
     """What has bodies in the JSON is what the tests above have looked at."""
     assert len(EXAMPLES) >= (13 if TRIES_ALL else 7)
     assert all(bodies_of(name) for name in EXAMPLES)
+
+
+KEY = ROOT / "examples" / "key.aidl"
+BEGINNINGS = {".svg": b"<?xml", ".dxf": b"  0\nSECTION", ".pdf": b"%PDF", ".json": b"{"}
+SCRIPT = """
+import pathlib, sys, aidl_lang
+key = aidl_lang.compile(pathlib.Path(sys.argv[1]))
+for suffix in sys.argv[2:]:
+    pathlib.Path("key" + suffix).write_bytes(key.export(suffix))
+"""
+
+
+def test_the_same_bytes_in_every_process(tmp_path: Path) -> None:
+    here = aidl_lang.compile(KEY)
+    for seed in "1234" if TRIES_ALL else "1":
+        environment = os.environ | {"PYTHONHASHSEED": seed, "PYTHONPATH": str(ROOT)}
+        words = [sys.executable, "-c", SCRIPT, str(KEY), *BEGINNINGS]
+        subprocess.run(words, cwd=tmp_path, env=environment, check=True)
+        for suffix, beginning in BEGINNINGS.items():
+            data = (tmp_path / f"key{suffix}").read_bytes()
+            assert data == here.export(suffix), suffix
+            assert data.startswith(beginning)
+            assert str(ROOT).encode() not in data
+    assert not ezdxf.options.write_fixed_meta_data_for_testing

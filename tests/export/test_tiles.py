@@ -13,15 +13,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 from svgelements import SVG, Path
 
-from aidl_lang.export import export
-from aidl_lang.export.job import ExportError, Job, Options
 from aidl_lang.export.marks import Area, Curves, Dot, Group, Ink, Picture, Text
 from aidl_lang.export.picture import tiled
 from aidl_lang.geometry.curves import Circle, Line, Vec
-from aidl_lang.geometry.drawing import draw
 from aidl_lang.geometry.region import Face, Loop
 from tests.amount import tries
-from tests.geometry.models import circle, model, polygon, rectangle, structure
+from tests.export.making import refused, written
+from tests.geometry.models import circle, polygon, rectangle, structure
 
 INK = Ink("#000000", 0.1)
 A4 = (210.0, 297.0)
@@ -103,15 +101,12 @@ def test_dots_and_texts_are_drawn_where_they_are():
     assert [p.groups[0].marks for p in found] == [marks[:1], marks[1:]]
 
 
-def job(**options) -> Job:
-    plate = structure(
-        "solid",
-        "plate",
-        polygon("r", (0, 0), (400, 0), (400, 250), (0, 250)),
-        structure("hole", "bore", circle("c", 195, 120, 60)),
-    )
-    m = model(plate)
-    return Job(m, draw(m)[0], options=Options(tile=A4, **options))
+PLATE = structure(
+    "solid",
+    "plate",
+    polygon("r", (0, 0), (400, 0), (400, 250), (0, 250)),
+    structure("hole", "bore", circle("c", 195, 120, 60)),
+)
 
 
 def of_class(svg: SVG, role: str) -> Path:
@@ -120,7 +115,7 @@ def of_class(svg: SVG, role: str) -> Path:
 
 
 def test_svg_pages_are_true_to_scale_and_clipped():
-    made = export(job(cut=True), ".svg")
+    made = written(PLATE, ".svg", cut=True, tile=A4)
     documents = [made.data, *made.further]
     assert len(documents) == 3  # 400 mm take three columns of 190 with 10 mm of overlap, 250 mm one row
     for data in documents:
@@ -139,32 +134,27 @@ def test_svg_pages_are_true_to_scale_and_clipped():
         assert (float(rect.attrib["width"]), float(rect.attrib["height"])) == (192, 279)
 
 
-def refusal(**options) -> tuple[str, str, tuple[str, ...]]:
-    tile = options.pop("tile", A4)
-    base = job(**options)
-    with pytest.raises(ExportError) as caught:
-        export(Job(base.model, base.drawing, options=Options(tile=tile, **options)), ".svg")
-    found = caught.value.diagnostic
-    return found.code, found.message, found.hints
-
-
-def test_pages_that_are_too_small():
-    assert refusal(tile=(99.0, 200.0)) == (
-        "E0924",
-        "a page of 99 × 200 mm is too small for tiles",
-        ("each side must have 100 mm at least",),
-    )
-    assert refusal(tile=(100.0, 200.0), overlap=41.0) == (
-        "E0924",
-        "an overlap of 41 mm is more than half of what a page of 100 × 200 mm shows",
-        ("give a smaller `--overlap` or a larger `--tile`",),
-    )
+@pytest.mark.parametrize(
+    ("options", "message", "hint"),
+    [
+        (
+            {"tile": (99.0, 200.0)},
+            "a page of 99 × 200 mm is too small for tiles",
+            "each side must have 100 mm at least",
+        ),
+        (
+            {"tile": (100.0, 200.0), "overlap": 41.0},
+            "an overlap of 41 mm is more than half of what a page of 100 × 200 mm shows",
+            "give a smaller `--overlap` or a larger `--tile`",
+        ),
+    ],
+)
+def test_pages_that_are_too_small(options: dict[str, object], message: str, hint: str):
+    assert refused(PLATE, ".svg", **options) == ("E0924", message, hint)
 
 
 def test_too_many_pages():
-    m = model(structure("solid", "field", rectangle("r", 0, 0, 1e7, 1e7)))
-    with pytest.raises(ExportError) as caught:
-        export(Job(m, draw(m)[0], options=Options(tile=A4)), ".svg")
+    field = structure("solid", "field", rectangle("r", 0, 0, 1e7, 1e7))
     columns, rows = math.ceil((1e7 - 10) / 180), math.ceil((1e7 - 10) / 267)
-    assert caught.value.diagnostic.code == "E0924"
-    assert caught.value.diagnostic.message == f"{columns * rows} pages are more than 500"
+    message = f"{columns * rows} pages are more than 500"
+    assert refused(field, ".svg", tile=A4)[:2] == ("E0924", message)

@@ -12,6 +12,7 @@ import math
 import os
 import re
 from collections.abc import Callable
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
@@ -54,10 +55,6 @@ def rounded_document(value: Any) -> Any:
 # --- What comes ------------------------------------------------------------------------------------
 
 
-def canonical(text: str) -> str:
-    return aidl_lang.format(text)
-
-
 def solved(text: str) -> str:
     return _rows(rounded_document(json_of(text)), "") + "\n"
 
@@ -83,23 +80,12 @@ def drawn(text: str) -> str:
 
 
 STAGES: dict[str, Callable[[str], str]] = {
-    "canonical.aidl": canonical,
+    "canonical.aidl": aidl_lang.format,
     "solved.json": solved,
     "drawing.svg": drawn,
 }
 
 # --- Tests -----------------------------------------------------------------------------------------
-
-
-def difference(expected: str, actual: str, name: str) -> str:
-    """A readable difference, not the whole of both."""
-    lines = list(
-        difflib.unified_diff(
-            expected.splitlines(), actual.splitlines(), f"expected {name}", "now", lineterm="", n=2
-        )
-    )
-    more = [f"… and {len(lines) - _MOST_LINES} more lines"] if len(lines) > _MOST_LINES else []
-    return "\n".join(lines[:_MOST_LINES] + more)
 
 
 @pytest.mark.parametrize("stage", STAGES)
@@ -114,9 +100,10 @@ def test_stage(path: Path, stage: str) -> None:
     assert golden.exists(), f"no golden {golden.relative_to(ROOT)}: `make accept` writes it"
     expected = golden.read_text("utf-8")
     if expected != actual:
-        pytest.fail(
-            f"{difference(expected, actual, f'{path.stem}/{stage}')}\n\n`make accept` takes it", pytrace=False
+        told = difflib.unified_diff(
+            expected.splitlines(), actual.splitlines(), stage, "now", lineterm="", n=2
         )
+        pytest.fail("\n".join([*islice(told, _MOST_LINES), "`make accept` takes it"]), pytrace=False)
 
 
 def test_no_golden_is_left_of_an_example_that_is_gone() -> None:

@@ -4,30 +4,24 @@ from __future__ import annotations
 
 import math
 import re
+from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import field, replace
 from functools import cached_property, lru_cache
-from itertools import pairwise
 from pathlib import PurePosixPath
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TypeAlias
 
 from fontTools.misc.transform import Transform
 
 from aidl_lang.common.diagnostics import Diagnostic
-from aidl_lang.common.font_files import Curve, Vec, point_of, quadratic
+from aidl_lang.common.font_files import Curve, Vec
 from aidl_lang.common.names import fold
 from aidl_lang.common.prose import counted, listed
 from aidl_lang.common.records import record
-from aidl_lang.common.running import checkpoint
 from aidl_lang.common.world import WHOLE
-
-if TYPE_CHECKING:
-    from ezdxf.math import BSpline
 
 # --- The curves of a drawing file: lines and cubic Bézier curves by their points, and arcs of ellipses, of
 # which circles are a kind. An affine map of each is one of the same sort, exactly.
-
-TURN = 2 * math.pi
 
 
 @record(slots=True)
@@ -48,7 +42,7 @@ class Bow:
 
     @property
     def is_whole(self) -> bool:
-        return abs(self.sweep) >= TURN
+        return abs(self.sweep) >= math.tau
 
     def at(self, t: float) -> Vec:
         """Returns the point at a parameter."""
@@ -65,7 +59,7 @@ class Bow:
 Stroke: TypeAlias = Curve | Bow
 
 
-def bow(center: Vec, u: Vec, v: Vec, first: float = 0.0, sweep: float = TURN) -> Bow:
+def bow(center: Vec, u: Vec, v: Vec, first: float = 0.0, sweep: float = math.tau) -> Bow:
     """Returns an arc by two conjugate half-diameters; a whole ellipse unless said."""
     made = Bow(center, u, v, first, sweep, center, center)
     start = made.at(first)
@@ -125,7 +119,7 @@ def _furthest(stroke: Stroke, way: Vec) -> float:
     best = max(map(along, ends(stroke)))
     if isinstance(stroke, Bow):
         across, up = along(stroke.u), along(stroke.v)
-        ahead = (math.atan2(up, across) - stroke.first) * math.copysign(1.0, stroke.sweep) % TURN
+        ahead = (math.atan2(up, across) - stroke.first) * math.copysign(1.0, stroke.sweep) % math.tau
         if ahead <= abs(stroke.sweep):  # it passes there
             best = max(best, along(stroke.center) + math.hypot(across, up))
         return best
@@ -155,7 +149,7 @@ def _turning_points(a: float, b: float, c: float, d: float) -> Iterator[float]:
 
 # --- In cubics -------------------------------------------------------------------------------------
 
-_FINE = TURN / 24
+_FINE = math.tau / 24
 """Turn of an arc that a cubic follows to 6e-9 of its radius."""
 
 
@@ -175,55 +169,6 @@ def as_curves(stroke: Stroke) -> tuple[Curve, ...]:
         two = end[0] - ex * handle, end[1] - ey * handle
         found.append((start, one, two, end))
     return tuple(found)
-
-
-# --- B-splines as cubic Bézier curves.
-
-_NEAR = 1e-7
-"""Distance of a cubic from the curve that it follows, relative to the size of that."""
-_HALVINGS = 10
-
-
-def cubics(entity: Any) -> tuple[list[Curve], bool]:
-    """Returns the cubics of a SPLINE, and whether they are the same curve."""
-    spline: BSpline = entity.construction_tool()
-    if spline.degree <= 3 and not spline.is_rational and spline.is_clamped:
-        pieces = (tuple(map(flat, piece)) for piece in spline.bezier_decomposition())
-        return [quadratic(*piece) if len(piece) == 3 else piece for piece in pieces], True
-    points = [flat(p) for p in spline.control_points]
-    size = max(max(axis) - min(axis) for axis in zip(*points, strict=True)) or 1.0
-    knots = sorted(set(spline.knots()[spline.degree : len(spline.knots()) - spline.degree]))
-    found = [
-        curve
-        for first, last in pairwise(knots)
-        for curve in _followed(spline, first, last, _NEAR * size, _HALVINGS)
-    ]
-    # Each begins where the one before it ends, to the last digit.
-    return [(found[k - 1][-1], *curve[1:]) if k else curve for k, curve in enumerate(found)], False
-
-
-def flat(p: Any) -> Vec:
-    return float(p[0]), float(p[1])
-
-
-def _followed(spline: BSpline, first: float, last: float, near: float, halvings: int) -> Iterator[Curve]:
-    """Yields cubics with the ends and the derivatives of a part of a spline, halved until they are near."""
-    checkpoint()
-    step = last - first
-    inside = [first + 1e-12 * step, last - 1e-12 * step]  # of the part, should its ends be corners
-    (start, heading), (end, arrival) = ((flat(p), flat(d)) for p, d in spline.derivatives(inside, 1))
-    one = start[0] + heading[0] * step / 3, start[1] + heading[1] * step / 3
-    two = end[0] - arrival[0] * step / 3, end[1] - arrival[1] * step / 3
-    middle = (first + last) / 2
-    off = max(
-        math.dist(point_of((start, one, two, end), k / 4), flat(spline.point(first + k / 4 * step)))
-        for k in (1, 2, 3)
-    )
-    if off <= near or halvings == 0:
-        yield start, one, two, end
-        return
-    yield from _followed(spline, first, middle, near, halvings - 1)
-    yield from _followed(spline, middle, last, near, halvings - 1)
 
 
 # --- A drawing that was read: its outlines and their names.
@@ -329,7 +274,7 @@ class Collector:
 
     what: str
     elements: list[Element] = field(default_factory=list)
-    left_out: dict[str, int] = field(default_factory=dict)
+    left_out: Counter[str] = field(default_factory=Counter)
     curves: int = 0
     numbers: int = 0
 
@@ -364,9 +309,6 @@ class Collector:
         if self.curves > MOST_CURVES or self.numbers > MOST_NUMBERS:
             hint = "simplify it in the program that drew it, or export fewer of its layers"
             raise DrawingError("E0363", f"`{self.what}` has more than {MOST_CURVES:,} curves", hint)
-
-    def leave_out(self, kind: str) -> None:
-        self.left_out[kind] = self.left_out.get(kind, 0) + 1
 
 
 # --- Reading of a drawing file, by the suffix of its name, and the names in it made names of AIDL.

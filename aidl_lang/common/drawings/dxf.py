@@ -13,25 +13,14 @@ from typing import TYPE_CHECKING, Any
 from fontTools.misc.transform import Identity, Scale, Transform
 
 from aidl_lang.common.diagnostics import Diagnostic
-from aidl_lang.common.drawings import (
-    TURN,
-    Bow,
-    Collector,
-    DrawingError,
-    Engraving,
-    Stroke,
-    bow,
-    cubics,
-    ends,
-    flat,
-    mapped,
-)
-from aidl_lang.common.font_files import FAULTS
+from aidl_lang.common.drawings import Bow, Collector, DrawingError, Engraving, Stroke, bow, ends, mapped
+from aidl_lang.common.font_files import FAULTS, Curve, Vec, point_of, quadratic
 from aidl_lang.common.prose import counted
 from aidl_lang.common.running import checkpoint
 
 if TYPE_CHECKING:
     from ezdxf.document import Drawing
+    from ezdxf.math import BSpline
 
 MOST_ENTITIES = 100_000
 _MOST_INSERTS = 20_000
@@ -128,7 +117,7 @@ class _Walk:
             if layer == "0" and around:
                 layer = around
             if entity.dxf.get("invisible", 0) or layer.lower() in self.hidden:
-                self.found.leave_out("hidden entity")
+                self.found.left_out["hidden entity"] += 1
             elif entity.dxftype() == "INSERT":
                 self._insert(entity, blocks, layer)
             else:
@@ -144,7 +133,7 @@ class _Walk:
             message = f"`{self.name}` is refused: its blocks stand in more than {_MOST_INSERTS:,} places"
             raise DrawingError("E0363", message, "export fewer of its layers, or simplify it")
         if entity.block() is None:
-            self.found.leave_out("dangling block reference")
+            self.found.left_out["dangling block reference"] += 1
             return
         if entity.mcount > 1:
             for one in entity.multi_insert():
@@ -157,7 +146,7 @@ class _Walk:
         strokes = list(self._strokes(kind, entity))
         if not strokes:
             if kind not in _READ or kind == "POLYLINE":
-                self.found.leave_out(_NAMES.get(kind, f"`{kind[:20]}` object"))
+                self.found.left_out[_NAMES.get(kind, f"`{kind[:20]}` object")] += 1
             return
         strokes = [mapped(s, Scale(self.unit or 1.0)) for s in strokes]
         engraving = _engraving(entity)
@@ -173,7 +162,7 @@ class _Walk:
     def _strokes(self, kind: str, entity: Any) -> Iterator[Stroke]:
         match kind:
             case "LINE":
-                yield flat(entity.dxf.start), flat(entity.dxf.end)
+                yield _flat(entity.dxf.start), _flat(entity.dxf.end)
             case "CIRCLE" | "ARC":
                 yield _round(entity, is_whole=kind == "CIRCLE")
             case "ELLIPSE":
@@ -185,7 +174,7 @@ class _Walk:
             case "POLYLINE" if entity.is_2d_polyline or entity.is_3d_polyline:
                 yield from _polyline(entity)
             case "SPLINE":
-                curves, is_exact = cubics(entity)
+                curves, is_exact = _cubics(entity)
                 self.fitted += not is_exact
                 yield from curves
 
@@ -236,35 +225,35 @@ _READ = frozenset({"LINE", "CIRCLE", "ARC", "ELLIPSE", "LWPOLYLINE", "POLYLINE",
 def _plane(entity: Any, height: float = 0.0) -> Transform:
     """Returns the map of an entity's own coordinates to the world's, seen from above."""
     system = entity.ocs()
-    return Transform(*(v for p in ((1, 0, 0), (0, 1, 0), (0, 0, height)) for v in flat(system.to_wcs(p))))
+    return Transform(*(v for p in ((1, 0, 0), (0, 1, 0), (0, 0, height)) for v in _flat(system.to_wcs(p))))
 
 
 def _round(entity: Any, *, is_whole: bool) -> Stroke:
     center, radius = entity.dxf.center, float(entity.dxf.radius)
-    first, sweep = 0.0, TURN
+    first, sweep = 0.0, math.tau
     if not is_whole:
         first = math.radians(entity.dxf.start_angle)
         sweep = math.radians(entity.dxf.end_angle) - first
-        sweep = sweep % TURN or TURN
-    made = bow(flat(center), (radius, 0.0), (0.0, radius), first, sweep)
+        sweep = sweep % math.tau or math.tau
+    made = bow(_flat(center), (radius, 0.0), (0.0, radius), first, sweep)
     return mapped(made, _plane(entity, center[2]))
 
 
 def _ellipse(entity: Any) -> Stroke:
     first = float(entity.dxf.start_param)
-    sweep = (float(entity.dxf.end_param) - first) % TURN
-    if sweep < 1e-9 or sweep > TURN - 1e-9:
-        sweep = TURN
-    return bow(flat(entity.dxf.center), flat(entity.dxf.major_axis), flat(entity.minor_axis), first, sweep)
+    sweep = (float(entity.dxf.end_param) - first) % math.tau
+    if sweep < 1e-9 or sweep > math.tau - 1e-9:
+        sweep = math.tau
+    return bow(_flat(entity.dxf.center), _flat(entity.dxf.major_axis), _flat(entity.minor_axis), first, sweep)
 
 
 def _polyline(entity: Any) -> Iterator[Stroke]:
     if entity.is_3d_polyline:
-        points = [(*flat(v.dxf.location), 0.0) for v in entity.vertices]
+        points = [(*_flat(v.dxf.location), 0.0) for v in entity.vertices]
         yield from _bulged(points, entity.is_closed, Identity)
         return
     kept = [v for v in entity.vertices if not v.dxf.flags & 16]  # without the frame of a fitted spline
-    points = [(*flat(v.dxf.location), float(v.dxf.get("bulge", 0.0))) for v in kept]
+    points = [(*_flat(v.dxf.location), float(v.dxf.get("bulge", 0.0))) for v in kept]
     height = entity.dxf.elevation[2] if entity.dxf.hasattr("elevation") else 0.0
     yield from _bulged(points, entity.is_closed, _plane(entity, height))
 
@@ -286,3 +275,52 @@ def _bulged(
         radius = math.hypot(dx, dy) * (1.0 + bulge * bulge) / (4.0 * abs(bulge))
         first, sweep = math.atan2(y0 - cy, x0 - cx), 4.0 * math.atan(bulge)
         yield mapped(Bow((cx, cy), (radius, 0.0), (0.0, radius), first, sweep, start, end), plane)
+
+
+# --- B-splines as cubic Bézier curves.
+
+_NEAR = 1e-7
+"""Distance of a cubic from the curve that it follows, relative to the size of that."""
+_HALVINGS = 10
+
+
+def _cubics(entity: Any) -> tuple[list[Curve], bool]:
+    """Returns the cubics of a SPLINE, and whether they are the same curve."""
+    spline: BSpline = entity.construction_tool()
+    if spline.degree <= 3 and not spline.is_rational and spline.is_clamped:
+        pieces = (tuple(map(_flat, piece)) for piece in spline.bezier_decomposition())
+        return [quadratic(*piece) if len(piece) == 3 else piece for piece in pieces], True
+    points = [_flat(p) for p in spline.control_points]
+    size = max(max(axis) - min(axis) for axis in zip(*points, strict=True)) or 1.0
+    knots = sorted(set(spline.knots()[spline.degree : len(spline.knots()) - spline.degree]))
+    found = [
+        curve
+        for first, last in pairwise(knots)
+        for curve in _followed(spline, first, last, _NEAR * size, _HALVINGS)
+    ]
+    # Each begins where the one before it ends, to the last digit.
+    return [(found[k - 1][-1], *curve[1:]) if k else curve for k, curve in enumerate(found)], False
+
+
+def _flat(p: Any) -> Vec:
+    return float(p[0]), float(p[1])
+
+
+def _followed(spline: BSpline, first: float, last: float, near: float, halvings: int) -> Iterator[Curve]:
+    """Yields cubics with the ends and the derivatives of a part of a spline, halved until they are near."""
+    checkpoint()
+    step = last - first
+    inside = [first + 1e-12 * step, last - 1e-12 * step]  # of the part, should its ends be corners
+    (start, heading), (end, arrival) = ((_flat(p), _flat(d)) for p, d in spline.derivatives(inside, 1))
+    one = start[0] + heading[0] * step / 3, start[1] + heading[1] * step / 3
+    two = end[0] - arrival[0] * step / 3, end[1] - arrival[1] * step / 3
+    middle = (first + last) / 2
+    off = max(
+        math.dist(point_of((start, one, two, end), k / 4), _flat(spline.point(first + k / 4 * step)))
+        for k in (1, 2, 3)
+    )
+    if off <= near or halvings == 0:
+        yield start, one, two, end
+        return
+    yield from _followed(spline, first, middle, near, halvings - 1)
+    yield from _followed(spline, middle, last, near, halvings - 1)

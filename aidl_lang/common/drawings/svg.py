@@ -16,17 +16,7 @@ from fontTools.misc.transform import Identity, Offset, Transform
 from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.drawings import Collector, DrawingError, Engraving, Stroke, ends, mapped
 from aidl_lang.common.drawings import svg_values as xml
-from aidl_lang.common.drawings.svg_values import (
-    MM_PER_PIXEL,
-    SHAPES,
-    Node,
-    ValueMistake,
-    declarations,
-    numbers,
-    outline,
-    pixels,
-    transform,
-)
+from aidl_lang.common.drawings.svg_values import SHAPES, Node, ValueMistake, outline, transform
 from aidl_lang.common.prose import first_few, ticked
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
@@ -90,7 +80,7 @@ class _Walk:
 
     def run(self) -> tuple[Collector, list[Diagnostic]]:
         width, height, matrix = self._page()
-        flip = Transform(MM_PER_PIXEL, 0.0, 0.0, -MM_PER_PIXEL, 0.0, height * MM_PER_PIXEL)
+        flip = Transform(xml.MM_PER_PIXEL, 0.0, 0.0, -xml.MM_PER_PIXEL, 0.0, height * xml.MM_PER_PIXEL)
         place = _Place(flip.transform(matrix), (width, height), {})
         style = self._style(self.root, {})
         if style.get("display") != "none":
@@ -134,7 +124,7 @@ class _Walk:
         if style.get("display") == "none" or (self.is_own and explains):
             return
         if any(style.get(way, "none") != "none" for way in ("clip-path", "mask")):
-            self.found.leave_out("clipped or masked shape")
+            self.found.left_out["clipped or masked shape"] += 1
         try:
             matrix = place.matrix.transform(transform(node.attributes.get("transform", "")))
         except (ValueMistake, ArithmeticError):
@@ -151,9 +141,9 @@ class _Walk:
         elif node.tag in SHAPES:
             self._shape(node, place)
         elif node.tag in _OTHERS:
-            self.found.leave_out(_OTHERS[node.tag])
+            self.found.left_out[_OTHERS[node.tag]] += 1
         else:
-            self.found.leave_out(f"`{node.tag[:20]}` element")
+            self.found.left_out[f"`{node.tag[:20]}` element"] += 1
 
     def _shape(self, node: Node, place: _Place) -> None:
         if place.style.get("visibility", "visible") in ("hidden", "collapse"):
@@ -182,7 +172,7 @@ class _Walk:
     def _use(self, node: Node, place: _Place) -> None:
         target = self.by_id.get(node.attributes.get("href", "").strip().removeprefix("#"))
         if target is None:
-            self.found.leave_out("dangling `use` element")
+            self.found.left_out["dangling `use` element"] += 1
             return
         if target in place.around or len(place.around) > _DEEPEST or target is self.root:
             self.circular.append(_called(node))
@@ -233,12 +223,12 @@ class _Walk:
         for selector, properties in self.rules:
             if selector in kinds:
                 style |= properties
-        style |= dict(declarations(node.attributes.get("style", "")))
+        style |= dict(xml.declarations(node.attributes.get("style", "")))
         return {name: value for name, value in style.items() if value != "inherit"}
 
     def _length(self, node: Node, text: str, whole: float, otherwise: float = 0.0) -> float:
         try:
-            return pixels(text, whole)
+            return xml.pixels(text, whole)
         except ValueMistake:
             self.broken.append(_called(node))
             return otherwise
@@ -251,7 +241,7 @@ class _Walk:
         if "viewBox" not in node.attributes:
             return None
         try:
-            x, y, width, height = numbers(node.attributes["viewBox"])
+            x, y, width, height = xml.numbers(node.attributes["viewBox"])
         except ValueError:
             self.broken.append(_called(node))
             return None
@@ -322,7 +312,7 @@ _COMMENT = re.compile(r"/\*.*?\*/|<!--|-->", re.S)
 def _rules(text: str) -> Iterator[tuple[str, dict[str, str]]]:
     """Yields the rules of a style sheet with simple selectors: a tag, a class, an id."""
     for found in _RULE.finditer(_COMMENT.sub("", text)):
-        properties = dict(declarations(found[2]))
+        properties = dict(xml.declarations(found[2]))
         for selector in found[1].split(","):
             yield selector.strip(), properties
 

@@ -11,7 +11,7 @@ from xml.parsers import expat
 
 from fontTools.misc.transform import Identity, Offset, Scale, Transform
 
-from aidl_lang.common.drawings import TURN, Bow, DrawingError, Stroke, bow
+from aidl_lang.common.drawings import Bow, DrawingError, Stroke, bow
 from aidl_lang.common.font_files import Vec, quadratic
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
@@ -43,21 +43,19 @@ class Node:
 def read(data: bytes, path: str) -> Node:
     """Returns the root of an SVG document. Raises DrawingError."""
     reader = _Reader(path)
+
+    def wrong(what: str, hint: str) -> DrawingError:
+        return DrawingError("E0362", f"`{path}` {what}", hint)
+
     try:
         reader.parser.Parse(data, True)
     except expat.ExpatError as reason:
-        what = expat.ErrorString(reason.code)
-        message = f"`{path}` is not well-formed: {what} in line {reason.lineno}"
-        hint = "save it anew as plain SVG in the program that drew it"
-        raise DrawingError("E0362", message, hint) from None
+        what = f"is not well-formed: {expat.ErrorString(reason.code)} in line {reason.lineno}"
+        raise wrong(what, "save it anew as plain SVG in the program that drew it") from None
     except (LookupError, ValueError):  # an encoding that is unknown, or takes several bytes
-        raise DrawingError(
-            "E0362", f"`{path}` is in an encoding that is not known", "save it anew as UTF-8"
-        ) from None
+        raise wrong("is in an encoding that is not known", "save it anew as UTF-8") from None
     if reader.root is None or reader.root.tag != "svg":
-        raise DrawingError(
-            "E0362", f"`{path}` is no SVG: it does not begin with an `svg` element", "export it as SVG"
-        )
+        raise wrong("is no SVG: it does not begin with an `svg` element", "export it as SVG")
     return reader.root
 
 
@@ -297,9 +295,9 @@ def _arc(start: Vec, end: Vec, rx: float, ry: float, rotation: float, large: boo
         height = -height
     mx, my = (x0 + x1) / 2 - height * dy, (y0 + y1) / 2 + height * dx
     first = math.atan2(y0 - my, x0 - mx)
-    sweep = (math.atan2(y1 - my, x1 - mx) - first) % TURN
+    sweep = (math.atan2(y1 - my, x1 - mx) - first) % math.tau
     if not positive:
-        sweep -= TURN
+        sweep -= math.tau
     u, v = (rx * c, rx * s), (-ry * s, ry * c)
     center = c * mx * rx - s * my * ry, s * mx * rx + c * my * ry
     return Bow(center, u, v, first, sweep, start, end)
@@ -351,7 +349,7 @@ def _radii(node: Node, page: tuple[float, float]) -> tuple[float, float]:
     return a, b
 
 
-_QUARTER = TURN / 4
+_QUARTER = math.tau / 4
 
 
 def _rectangle(x: float, y: float, width: float, height: float, rx: float, ry: float) -> Iterator[Stroke]:

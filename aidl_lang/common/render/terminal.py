@@ -83,7 +83,6 @@ def _common(a: Sequence[str], b: Sequence[str]) -> int:
 
 
 def _differing(a: str, b: str) -> tuple[tuple[int, int], tuple[int, int]]:
-    """Returns the range of each text that the other does not share."""
     head = _common(a, b)
     tail = _common(a[head:][::-1], b[head:][::-1])
     return (head, len(a) - tail), (head, len(b) - tail)
@@ -177,7 +176,6 @@ class _Page:
 
 
 def _by_source(diagnostic: Diagnostic) -> dict[SourceFile, list[Mark]]:
-    """Returns the labels of each source, that of the primary one first."""
     labels = [(label, False) for label in diagnostic.secondary]
     if diagnostic.span is not None:
         labels.insert(0, (Label(_shown(diagnostic.span), diagnostic.label), True))
@@ -223,12 +221,11 @@ def _place(span: Span | None) -> dict[str, Any]:
 
 
 def _fix(fix: Fix) -> dict[str, Any]:
-    edits = (
-        {**_place(span), "start": span.start, "end": span.end, "replacement": edit.replacement}
-        for edit in fix.edits
-        for span in [edit.span]
-    )
-    return {"title": fix.title, "sure": fix.is_sure, "edits": list(edits)}
+    edits = [
+        {**_place(e.span), "start": e.span.start, "end": e.span.end, "replacement": e.replacement}
+        for e in fix.edits
+    ]
+    return {"title": fix.title, "sure": fix.is_sure, "edits": edits}
 
 
 # --- Diagnostics for a language model: short, without pictures made of characters, the fix as text to write.

@@ -48,9 +48,6 @@ class GeometryPair:
     after: SolvedGeometry
     pose: Pose
 
-    def follows(self, move: Move) -> bool:
-        return self.pose.follows(move)
-
     @property
     def was(self) -> str | None:
         return self.before.name if self.before.name != self.after.name else None
@@ -82,12 +79,12 @@ class StructurePair:
     @cached_property
     def pose(self) -> Pose:
         """The pose of everything that is in both versions; valid once all pairs are found."""
-        parts = [item.pose for item in self.items]
+        parts = [*(g.pose for g in self.geometry), *(s.pose for s in self.structures)]
         return Pose.joined([*parts, *_plan(self.before, self.after, self.tolerance)], self.tolerance)
 
     @property
-    def items(self) -> list[GeometryPair | StructurePair]:
-        return [*self.geometry, *self.structures]
+    def items(self) -> list[Pose | StructurePair]:
+        return [*(g.pose for g in self.geometry), *self.structures]
 
     def follows(self, move: Move) -> bool:
         """True if most of its members moved by `move`."""
@@ -235,11 +232,8 @@ def _nearest(
 
 def _form(s: SolvedStructure) -> object:
     """Returns a key that is equal for structures that differ only in name and place."""
-    return (
-        s.kind,
-        tuple((g.name, g.type) for g in s.geometry),
-        tuple((c.name, _form(c)) for c in s.structures),
-    )
+    inner = tuple((c.name, _form(c)) for c in s.structures)
+    return s.kind, tuple((g.name, g.type) for g in s.geometry), inner
 
 
 def _form_of_geometry(g: SolvedGeometry) -> object:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import field, replace
+from dataclasses import asdict, field, replace
 from functools import cached_property
 from typing import Literal, TypeAlias
 
@@ -50,10 +50,8 @@ class Move:
         return np.stack((c * x - s * y + self.dx, s * x + c * y + self.dy), axis=1)
 
     @property
-    def fixed_point(self) -> Vec | None:
-        """The point about which it turns; None for a shift or a reflection."""
-        if self.mirrored or not self.turn:
-            return None
+    def fixed_point(self) -> Vec:
+        """The point about which it turns, if that is what it does."""
         # (1 - R) p = d, and (1 - R) is 2 sin(turn/2) times a turn by (turn - 180)/2.
         half = math.radians(self.turn) / 2
         k = 1 / (2 * math.tan(half))
@@ -152,12 +150,18 @@ class Pose:
 
 def pose_of(before: SolvedGeometry, after: SolvedGeometry, tolerance: float) -> Pose:
     """Returns the pose of two geometries; not congruent if they differ in kind, in parts or in radii."""
-    places: list[tuple[Vec, Vec]] = []
-    axes: list[tuple[float, float]] = []
+    both = list(zip(before.walk(), after.walk(), strict=False))
     centers = [g.values.get("center") for g in (before, after)]
     known = np.array(centers, dtype=np.float64).reshape(2, 1, 2) if all(centers) else None
-    if not _gather(before, after, tolerance, places, axes):
+    if not all(_are_congruent(a, b, tolerance) for a, b in both):
         return Pose(tolerance, congruent=False, centers=known)
+    places = [pair for a, b in both for pair in zip(_places(a), _places(b), strict=True)]
+    axes = [
+        (math.degrees(a.curve.angle), math.degrees(b.curve.angle))
+        for a, b in both
+        if isinstance(a.curve, Ellipse) and isinstance(b.curve, Ellipse)
+        if abs(a.curve.rx - a.curve.ry) > tolerance
+    ]
     return Pose(
         tolerance,
         np.array(places, dtype=np.float64).reshape(-1, 2, 2).transpose(1, 0, 2),
@@ -166,30 +170,13 @@ def pose_of(before: SolvedGeometry, after: SolvedGeometry, tolerance: float) -> 
     )
 
 
-def _gather(
-    a: SolvedGeometry,
-    b: SolvedGeometry,
-    tolerance: float,
-    places: list[tuple[Vec, Vec]],
-    axes: list[tuple[float, float]],
-) -> bool:
-    """Collects places and axes; returns False as soon as the two differ."""
+def _are_congruent(a: SolvedGeometry, b: SolvedGeometry, tolerance: float) -> bool:
+    """Tells whether two geometries, their parts aside, agree in kind, in parts and in radii."""
     if a.type != b.type or [p.name for p in a.parts] != [p.name for p in b.parts]:
         return False
-    first, last = _places(a), _places(b)
-    if type(a.curve) is not type(b.curve) or len(first) != len(last):
+    if type(a.curve) is not type(b.curve) or len(_places(a)) != len(_places(b)):
         return False
-    radii = zip(_radii(a), _radii(b), strict=True)
-    if any(not abs(r - s) <= tolerance for r, s in radii):
-        return False
-    places += zip(first, last, strict=True)
-    if (
-        isinstance(a.curve, Ellipse)
-        and isinstance(b.curve, Ellipse)
-        and abs(a.curve.rx - a.curve.ry) > tolerance
-    ):
-        axes.append((math.degrees(a.curve.angle), math.degrees(b.curve.angle)))
-    return all(_gather(p, q, tolerance, places, axes) for p, q in zip(a.parts, b.parts, strict=True))
+    return all(abs(r - s) <= tolerance for r, s in zip(_radii(a), _radii(b), strict=True))
 
 
 def _places(g: SolvedGeometry) -> list[Vec]:
@@ -312,7 +299,7 @@ class Comparison:
         return same and not (self.structures or self.contacts or self.freed or self.held)
 
     def __str__(self) -> str:
-        from aidl_lang.export.comparison.wording import text
+        from aidl_lang.export.comparison.showing import text
 
         return text(self)
 
@@ -346,7 +333,7 @@ def _structure(s: StructureChange) -> Json:
     entry: Json = {"path": s.path, "kind": s.kind, "change": s.sort}
     entry |= _went(s.was, s.move)
     fields = {"sizes": s.sizes, "params": s.params, "settings": s.settings}
-    entry |= {name: _fields(found) for name, found in fields.items() if found}
+    entry |= {name: found for name, found in fields.items() if found}
     if s.geometry:
         entry["geometry"] = [_geometry(g) for g in s.geometry]
     return entry
@@ -355,7 +342,7 @@ def _structure(s: StructureChange) -> Json:
 def _geometry(g: GeometryChange) -> Json:
     entry: Json = {"name": g.name, "type": g.type, "change": g.sort} | _went(g.was, g.move)
     if g.fields:
-        entry["fields"] = _fields(g.fields)
+        entry["fields"] = g.fields
     if g.is_outline_changed:
         entry["outline"] = "changed"
     return entry
@@ -364,12 +351,8 @@ def _geometry(g: GeometryChange) -> Json:
 def _went(was: str | None, move: Move | None) -> Json:
     entry: Json = {} if was is None else {"was": was}
     if move is not None:
-        entry["move"] = {"dx": move.dx, "dy": move.dy, "turn": move.turn, "mirrored": move.mirrored}
+        entry["move"] = asdict(move)
     return entry
-
-
-def _fields(fields: Fields) -> Mapping[str, list[object]]:
-    return {name: list(pair) for name, pair in fields.items()}
 
 
 def _lie(pair: Contact | None) -> Json | None:

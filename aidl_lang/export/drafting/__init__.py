@@ -9,29 +9,12 @@ from itertools import chain, groupby
 
 from aidl_lang.common.prose import fixed
 from aidl_lang.common.records import record
+from aidl_lang.export import marks
 from aidl_lang.export.dimension_marks import HEIGHT, Pen
 from aidl_lang.export.dimensioning import Callout, dimensioned_to_scale
+from aidl_lang.export.drafting import tables
 from aidl_lang.export.drafting.contents import Content, View, contents
-from aidl_lang.export.drafting.tables import (
-    BLACK,
-    CAPITAL,
-    NARROW,
-    SCALES,
-    SMALL,
-    STANDARDS,
-    TITLE_HEIGHT,
-    WIDE,
-    WIDTH,
-    Paper,
-    Standard,
-    Table,
-    outline,
-    papers,
-    scale_text,
-    title_block,
-    width_of,
-    written,
-)
+from aidl_lang.export.drafting.tables import BLACK, NARROW, SMALL, WIDE, WIDTH, Paper, Table
 from aidl_lang.export.job import ExportError, Job
 from aidl_lang.export.marks import Area, Curves, Group, Ink, Mark, Picture, Placing, Text, corners, widened
 from aidl_lang.geometry.curves import Arc, Bounds, Circle, Line, Piece, Vec, union_bounds
@@ -73,7 +56,7 @@ def drawn_view(view: View, factor: float, digits: float) -> DrawnView:
     """Draws a view. `factor`: millimetres on paper for one of the part; `digits`: height of the values."""
     pen = Pen(digits / HEIGHT / factor)
     signs = tuple(
-        Text((x + reach, y + reach), hole.sign, SMALL / CAPITAL / factor, BLACK)
+        Text((x + reach, y + reach), hole.sign, SMALL / marks.CAPITAL / factor, BLACK)
         for hole in view.holes
         for (x, y), reach in [(hole.circle.center, 0.72 * hole.circle.radius + 0.8 / factor)]
     )
@@ -99,8 +82,8 @@ def drawn_view(view: View, factor: float, digits: float) -> DrawnView:
     placed = [placing.group(replace(g, marks=tuple(map(_black, g.marks)))) for g in groups if g.marks]
     width, height = factor * (box[2] - box[0]), factor * (box[3] - box[1]) + bottom
     if words:
-        width = max(width, width_of(". ".join(words), SMALL))
-        label = written(". ".join(words), (width / 2, 0.5), SMALL, "middle")
+        width = max(width, tables.width_of(". ".join(words), SMALL))
+        label = tables.written(". ".join(words), (width / 2, 0.5), SMALL, "middle")
         placed.append(Group("label", (label,), {"class": "label"}))
     return DrawnView(width, height, tuple(placed), left)
 
@@ -123,7 +106,7 @@ def _datum(view: View, factor: float) -> Iterator[Mark]:
     if view.holes:
         left, bottom, _, _ = view.drawing.box
         is_corner = abs(view.datum[0] - left) + abs(view.datum[1] - bottom) < 1e-6 * view.drawing.size
-        size = SMALL / CAPITAL / factor
+        size = SMALL / marks.CAPITAL / factor
         reach, aside = 9.0 / factor, 1.0 / factor
         for way, sign in (((1.0, 0.0), "X"), ((0.0, 1.0), "Y")):
             x, y = (left - 3 * aside, bottom - 3 * aside) if is_corner else view.datum
@@ -220,8 +203,6 @@ class Draft:
 
 @record()
 class _Laid:
-    """A sheet on which everything has a place."""
-
     paper: Paper
     scale: Scale
     views: tuple[tuple[Vec, DrawnView], ...]
@@ -234,7 +215,7 @@ def drafted(job: Job, draft: Draft) -> list[Picture]:
     if not job.drawing.bodies and not job.drawing.strokes:
         raise ExportError("E0970", "nothing is drawn, so there is nothing to put on a sheet")
     sheets = contents(job.model, job.drawing)
-    standard = STANDARDS[draft.standard]
+    standard = tables.STANDARDS[draft.standard]
     pages = []
     for number, content in enumerate(sheets, 1):
         laid = _laid(content, draft, standard)
@@ -243,9 +224,9 @@ def drafted(job: Job, draft: Draft) -> list[Picture]:
     return pages
 
 
-def _laid(content: Content, draft: Draft, standard: Standard) -> _Laid:
+def _laid(content: Content, draft: Draft, standard: tables.Standard) -> _Laid:
     """Returns the sheet on the smallest paper, at the largest scale, that hold everything."""
-    choices = list(papers(standard, draft.paper, draft.is_landscape))
+    choices = list(tables.papers(standard, draft.paper, draft.is_landscape))
     is_crowded = max(len(view.wanted) for view in content.views) > _MANY
     best: _Laid | None = None
     for name, ways in groupby(choices, key=lambda paper: paper.name):
@@ -258,7 +239,7 @@ def _laid(content: Content, draft: Draft, standard: Standard) -> _Laid:
             return best
     if best is None:
         where = "any paper" if draft.paper is None else f"{choices[0].label} paper"
-        at = f" at {scale_text(draft.scale)}" if draft.scale is not None else ""
+        at = f" at {tables.scale_text(draft.scale)}" if draft.scale is not None else ""
         message = f"`{content.subject.path}` does not fit on {where}{at} with its dimensions"
         raise ExportError("E0970", message, "leave out `--scale` and `--paper` to have them chosen")
     return best
@@ -270,7 +251,7 @@ def _fitted(content: Content, draft: Draft, paper: Paper) -> _Laid | None:
     sizes = [
         (v.drawing.box[2] - v.drawing.box[0], v.drawing.box[3] - v.drawing.box[1]) for v in content.views
     ]
-    for scale in (draft.scale,) if draft.scale is not None else SCALES:
+    for scale in (draft.scale,) if draft.scale is not None else tables.SCALES:
         factor = _factor(scale)
         if draft.scale is None and factor > _LARGEST:
             continue
@@ -291,7 +272,7 @@ def _factor(scale: Scale) -> float:
 def _rooms(content: Content, paper: Paper) -> Iterator[Bounds]:
     """Yields the free parts of a sheet: above the title block and the tables on it, and beside them."""
     left, bottom, right, top = paper.frame
-    stack = TITLE_HEIGHT + sum(table.height for table in _tables(content))
+    stack = tables.TITLE_HEIGHT + sum(table.height for table in _tables(content))
     if top - bottom - stack > 2 * _AIR:
         yield left + _AIR, bottom + stack + _AIR, right - _AIR, top - _AIR
     if right - left - WIDTH > 2 * _AIR:
@@ -356,7 +337,7 @@ def _title(job: Job, content: Content, draft: Draft, laid: _Laid, sheet: str) ->
         "date": draft.date,
         "material": "see list" if content.items else content.style.material or "",
         "thickness": "see list" if content.items else thickness,
-        "scale": scale_text(laid.scale),
+        "scale": tables.scale_text(laid.scale),
         "paper": laid.paper.label,
         "sheet": sheet,
         "unit": "mm, degrees",
@@ -375,14 +356,14 @@ def _plain(name: str) -> str:
     return words[:1].upper() + words[1:]
 
 
-def _page(content: Content, laid: _Laid, title: Mapping[str, str], standard: Standard) -> Picture:
+def _page(content: Content, laid: _Laid, title: Mapping[str, str], standard: tables.Standard) -> Picture:
     _, bottom, right, _ = laid.paper.frame
-    frame = outline(*corners(laid.paper.frame), width=2 * WIDE, role="frame")
+    frame = tables.outline(*corners(laid.paper.frame), width=2 * WIDE, role="frame")
     groups = [Group("frame", (frame,), {"class": "frame"})]
     for number, (corner, view) in enumerate(laid.views, 1):
         groups += view.at(corner, number)
-    groups.append(title_block(title, right - WIDTH, bottom, standard.is_first_angle))
-    level = bottom + TITLE_HEIGHT
+    groups.append(tables.title_block(title, right - WIDTH, bottom, standard.is_first_angle))
+    level = bottom + tables.TITLE_HEIGHT
     for table in _tables(content):
         groups.append(table.group(right - WIDTH, level))
         level += table.height

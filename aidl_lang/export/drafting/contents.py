@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from textwrap import wrap
 
@@ -14,20 +14,11 @@ from aidl_lang.geometry.curves import Circle, Piece, Vec, union_bounds
 from aidl_lang.geometry.dimensions import completed, overall
 from aidl_lang.geometry.drawing import Body, Drawing, Stroke
 from aidl_lang.geometry.parts import engraved, gathered, shape_of
-from aidl_lang.geometry.solved import (
-    Dimension,
-    Length,
-    Opening,
-    Roundness,
-    Scalar,
-    SolvedModel,
-    SolvedStructure,
-)
-from aidl_lang.geometry.styles import Style
+from aidl_lang.geometry.solved import Dimension, Length, Opening, Roundness, SolvedModel, SolvedStructure
+from aidl_lang.geometry.styles import Attributes, Style
 
 # --- What a program says of a part in words: threads, how holes are sunk, notes, general tolerances.
 
-Attributes = Mapping[str, tuple[Scalar, ...]]
 Labels = list[tuple[Circle, str, str]]
 Notes = tuple[tuple[str, tuple[Piece, ...]], ...]
 

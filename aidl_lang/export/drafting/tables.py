@@ -7,7 +7,7 @@ from dataclasses import field
 
 from aidl_lang.common.materials import PAPERS
 from aidl_lang.common.records import record
-from aidl_lang.export.marks import Curves, Group, Ink, Mark, Text, corners, polygon
+from aidl_lang.export.marks import CAPITAL, Curves, Group, Ink, Mark, Text, corners, polygon
 from aidl_lang.geometry.curves import Bounds, Circle, Line, Vec
 
 # --- Paper, frames and scales of technical drawings: ISO 5457 and 5455, and what is usual beside them.
@@ -88,8 +88,6 @@ WIDE, NARROW = 0.35, 0.18
 """Widths of lines: of outlines and the frame, and of everything else (ISO 128-2, group 0.35)."""
 SMALL, LARGE = 2.5, 3.5
 """Heights of capitals (ISO 3098-1)."""
-CAPITAL = 0.73
-"""Height of capitals relative to the size of the font."""
 _CHARACTER = 0.62
 """Width of a character relative to the size of the font, on the wide side."""
 _CUT = "…"

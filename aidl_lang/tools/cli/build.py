@@ -107,14 +107,14 @@ def build(arguments: argparse.Namespace, memory: Memory | None = None) -> BuildR
     With a `memory` of the last run, only what has changed since then is solved again.
     """
     from aidl_lang import pipeline
-    from aidl_lang.common.world import NotedWorld
+    from aidl_lang.common.world import KeptWorld
 
     start = time.perf_counter()
     source = files.read(arguments.file)
     outputs = targets(arguments)
     profile(arguments.profile)  # a wrong one is told before any work is done
     disk = files.world(arguments.file)
-    world = NotedWorld(disk)
+    world = KeptWorld(disk)
     params, show = dict(arguments.params), tuple(sorted(arguments.show))
     settings = pipeline.Settings.of(arguments.variant, strict=arguments.strict)
     compiled = pipeline.compile(source, world, params, settings, show, memory)

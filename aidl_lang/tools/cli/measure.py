@@ -287,7 +287,7 @@ def _draw(comparison: Comparison, outputs: list[tuple[str, str]], pixels: int) -
         return
     from aidl_lang.common.diagnostics import within
     from aidl_lang.export import render
-    from aidl_lang.export.comparison.picture import overlay
+    from aidl_lang.export.comparison.showing import overlay
     from aidl_lang.export.job import Options
 
     with within(LONGEST, "drawing the differences in"):

@@ -1,41 +1,31 @@
-"""STEP files, read back by Open CASCADE and measured against closed forms."""
+"""Solids: STEP, read back by Open CASCADE and measured against closed forms; STL and 3MF, read by trimesh."""
 
 from __future__ import annotations
 
+import io
 import math
 import os
 import subprocess
 import sys
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 
-from aidl_lang import pipeline
 from aidl_lang.common.render import render
-from aidl_lang.common.source import SourceFile
 from aidl_lang.export import export
 from aidl_lang.export.job import ExportError, Job, Options
 from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, Line
 from aidl_lang.geometry.drawing import draw
 from aidl_lang.geometry.region import Face, Loop, Region
-from aidl_lang.geometry.solved import SolvedGeometry, SolvedModel
+from aidl_lang.geometry.solved import SolvedGeometry, SolvedStructure
+from tests.amount import large
 from tests.compiled import LIGHTER, compiled
 from tests.documents import ROOT
-from tests.export.readers import read_step
+from tests.export.making import refused, written
+from tests.export.readers import read_meshes, read_step
 from tests.geometry.models import arc, circle, compound, model, primitive, rectangle, structure
-
-
-def written(program: str, thickness: float | None = None) -> tuple[bytes, list[str]]:
-    compiled = pipeline.compile(SourceFile("part.aidl", program))
-    assert compiled.ok, compiled.diagnostics
-    made = compiled.exported(".step", Options(thickness=thickness))
-    return made.data, [f"{note.code}: {note.message}" for note in made.notes]
-
-
-def of_model(m: SolvedModel, thickness: float | None = None) -> bytes:
-    return export(Job(m, draw(m)[0], options=Options(thickness=thickness)), ".step").data
-
 
 # --- One body --------------------------------------------------------------------------------------
 
@@ -69,7 +59,7 @@ def test_every_kind_of_curve_is_exact(tmp_path: Path) -> None:
         )
     )
     drawing, _ = draw(m)
-    (part,) = read_step(of_model(m, 2.5), tmp_path).parts
+    (part,) = read_step(written(m, ".step", thickness=2.5).data, tmp_path).parts
     assert part.is_valid
     assert part.is_closed
     assert part.surfaces["Cylinder"] == 1
@@ -98,9 +88,9 @@ assembly box {
 
 
 def test_an_assembly_keeps_its_bodies_apart_named_and_coloured(tmp_path: Path) -> None:
-    data, notes = written(SEVERAL)
-    file = read_step(data, tmp_path)
-    assert notes == []
+    made = written(SEVERAL, ".step")
+    data, file = made.data, read_step(made.data, tmp_path)
+    assert made.notes == ()
     assert file.name == "box"
     assert [part.name for part in file.parts] == [
         "box.base", "box.lid", "box.marks.cross", "box.marks.ring", "box.marks.bow",
@@ -129,9 +119,9 @@ def test_a_box_of_boards_stands_in_space(tmp_path: Path) -> None:
         }
     }
     """
-    data, notes = written(program)
-    file = read_step(data, tmp_path)
-    assert notes == []
+    made = written(program, ".step")
+    file = read_step(made.data, tmp_path)
+    assert made.notes == ()
     assert {part.name: tuple(round(v, 9) for v in part.bounds) for part in file.parts} == {
         "box.bottom": (0, 0, 0, 100, 60, 3),
         "box.near": (3, 3, 3, 97, 6, 43),
@@ -155,9 +145,9 @@ def test_turned_and_mirrored_structures(tmp_path: Path) -> None:
         }
     }
     """
-    data, notes = written(program)
-    file = read_step(data, tmp_path)
-    assert notes == ["W0726: `all.half.post` stands unturned in `all.half`, which is turned"]
+    made = written(program, ".step")
+    file, (note,) = read_step(made.data, tmp_path), made.notes
+    assert note.message == "`all.half.post` stands unturned in `all.half`, which is turned"
     assert file["all.half.foot"].bounds == pytest.approx((98, 0, 0, 102, 20, 2), abs=1e-9)
     # Its origin is carried to (100, 20); its own turn stands it up in the plane of x and z.
     assert file["all.half.post"].bounds == pytest.approx((96, 20, 0, 100, 22, 30), abs=1e-9)
@@ -175,7 +165,7 @@ def test_a_mirrored_structure_of_another_orientation(tmp_path: Path) -> None:
         @detached right = mirror(left, about: y_axis)
     }
     """
-    file = read_step(written(program)[0], tmp_path)
+    file = read_step(written(program, ".step").data, tmp_path)
     right = file["all.right"]
     assert right.bounds == pytest.approx((1, 0, 0, 10, 2, 6), abs=1e-9)
     assert right.is_valid
@@ -193,7 +183,7 @@ def test_what_is_united_has_the_place_and_thickness_of_its_body() -> None:
         @thickness(4mm) solid rib { body = rectangle(center: fixed((0, 0)), width: 10, height: 60) }
     }
     """
-    assert written(program)[1] == [
+    assert [f"{note.code}: {note.message}" for note in written(program, ".step").notes] == [
         "W0727: `@elevation` and `@thickness` of `knob.grip` count for nothing: it is one body with `knob`",
         "W0727: `@orientation` of `knob.bore` counts for nothing: it is one body with `knob`",
     ]
@@ -207,7 +197,7 @@ def test_another_process_writes_the_same_and_says_nothing(tmp_path: Path) -> Non
     command = [sys.executable, "-m", "aidl_lang", "compile", "box.aidl", "-o", "-", "--format", "step"]
     environment = {**os.environ, "PYTHONHASHSEED": "1", "PYTHONPATH": str(ROOT)}
     ran = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, check=True)
-    assert ran.stdout == written(SEVERAL)[0]
+    assert ran.stdout == written(SEVERAL, ".step").data
     assert b"STEP" not in ran.stderr
     assert b"Transfer" not in ran.stderr
 
@@ -216,36 +206,35 @@ def test_settings_of_the_process_are_as_before() -> None:
     from OCP.Interface import Interface_Static
     from OCP.Message import Message, Message_PrinterOStream
 
-    written(SEVERAL)
+    written(SEVERAL, ".step")
     settings = {"write.step.schema": "AP203", "write.step.unit": "INCH", "write.surfacecurve.mode": "On"}
     for name, value in settings.items():
         assert Interface_Static.SetCVal_s(name, value)
     before = {name: Interface_Static.CVal_s(name) for name in settings}
     printer = Message_PrinterOStream()
     Message.DefaultMessenger_s().AddPrinter(printer)
-    data = written(BITTEN)[0]
+    data = written(BITTEN, ".step").data
     assert {name: Interface_Static.CVal_s(name) for name in settings} == before
     assert Message.DefaultMessenger_s().RemovePrinter(printer)
     Interface_Static.SetCVal_s("write.step.schema", "AP214IS")
     Interface_Static.SetCVal_s("write.step.unit", "MM")
-    assert data == written(BITTEN)[0]
+    assert data == written(BITTEN, ".step").data
     assert b"FILE_SCHEMA(('AUTOMOTIVE_DESIGN { 1 0 10303 214 1 1 1 1 }'));" in data
     assert b"SI_UNIT(.MILLI.,.METRE.)" in data
 
 
-def test_the_extra_is_named_where_it_is_missing(monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize(("suffix", "extra"), [(".step", "step"), (".3mf", "3mf")])
+def test_a_package_that_is_missing(monkeypatch: pytest.MonkeyPatch, suffix: str, extra: str) -> None:
     monkeypatch.setattr("aidl_lang.export.job.find_spec", lambda name: None)
-    with pytest.raises(ExportError) as reason:
-        written(BITTEN)
-    assert render(reason.value.diagnostic) == (
-        "error[E0913]: `.step` needs a package that is not installed\n  = hint: pip install 'aidl-lang[step]'"
-    )
+    message, hint = f"`{suffix}` needs a package that is not installed", f"pip install 'aidl-lang[{extra}]'"
+    assert refused(BITTEN, suffix) == ("E0913", message, hint)
+    assert written(BITTEN, ".stl").data
 
 
 def test_odd_names_come_back_as_they_are(tmp_path: Path) -> None:
     name = "a'b\\c </svg> Größe 木 \U0001f600 \\X2\\0041\\X0\\ ~0~ " + 30 * "many'words_"
     m = model(structure("assembly", name, structure("solid", name, circle("c", 0, 0, 1))))
-    data = of_model(m, 1)
+    data = written(m, ".step", thickness=1).data
     assert data.isascii()
     file = read_step(data, tmp_path)
     assert (file.name, file.parts[0].name) == (name, f"{name}.{name}")
@@ -261,9 +250,8 @@ def test_odd_names_come_back_as_they_are(tmp_path: Path) -> None:
     ],
 )
 def test_what_cannot_be_made_solid(attribute: str, thickness: float | None, message: str) -> None:
-    with pytest.raises(ExportError) as reason:
-        written(f"{attribute} solid s {{ c = circle(center: origin, radius: 5) }}", thickness)
-    assert (reason.value.diagnostic.code, reason.value.diagnostic.message) == ("E0918", message)
+    program = f"{attribute} solid s {{ c = circle(center: origin, radius: 5) }}"
+    assert refused(program, ".step", thickness=thickness)[:2] == ("E0918", message)
 
 
 @pytest.mark.parametrize(
@@ -282,7 +270,7 @@ def test_outlines_that_touch(
     plate = structure(
         "solid", "s", rectangle("r", 0, 0, 40, 20), *(structure("hole", g.name, g) for g in holes)
     )
-    (part,) = read_step(of_model(model(plate), thickness), tmp_path).parts
+    (part,) = read_step(written(plate, ".step", thickness=thickness).data, tmp_path).parts
     assert part.is_valid
     radius = holes[0].values["radius"]
     exact = 800 - circles * math.pi * radius**2
@@ -324,3 +312,129 @@ def test_examples(path: Path, tmp_path: Path) -> None:
     whole = [p for body in made.drawing.bodies for loop in body.region.loops for p in loop.pieces]
     cylinders = sum(part.surfaces["Cylinder"] for part in file.parts)
     assert cylinders == sum(isinstance(p, Arc | Circle) for p in whole)
+
+
+SUFFIXES = (".stl", ".3mf")
+
+
+def only(data: bytes, suffix: str) -> Any:
+    (body,) = read_meshes(data, suffix).values()
+    return body
+
+
+RING = """
+@thickness(3mm)
+solid ring {
+    body = circle(center: fixed((0, 0)), radius: 20)
+    hole bore { rim = circle(center: fixed((0, 0)), radius: 8) }
+}
+"""
+STAND = """
+assembly stand {
+    @thickness(4mm) @color("tomato") @material("birch")
+    solid base { body = rectangle(center: fixed((30, 20)), width: 60, height: 40) }
+    @thickness(3mm) @orientation(front) @elevation(-1)
+    solid back at fixed((0, 40)) { body = rectangle(center: fixed((30, 24)), width: 60, height: 40) }
+    @thickness(3mm) @orientation(side)
+    solid end at fixed((57, 0)) { body = rectangle(center: fixed((20, 24)), width: 40, height: 40) }
+    @detached solid note { body = rectangle(center: fixed((90, 20)), width: 10, height: 10) }
+    drawing mark { stroke = line(fixed((0, 0)), fixed((10, 10))) }
+}
+"""
+
+
+@pytest.mark.parametrize("suffix", SUFFIXES)
+def test_every_vertex_lies_on_the_outline(suffix: str) -> None:
+    body = only(written(RING, suffix).data, suffix)
+    radii = [math.hypot(x, y) for x, y, _ in body.vertices]
+    assert all(min(abs(r - 20), abs(r - 8)) < 2e-6 for r in radii)
+
+
+@pytest.mark.parametrize("suffix", SUFFIXES)
+def test_bodies_stay_apart_named_and_placed(suffix: str) -> None:
+    found = read_meshes(written(STAND, suffix).data, suffix)
+    assert {name: body.bounds.round(5).tolist() for name, body in found.items()} == {
+        "stand.base": [[0, 0, 0], [60, 40, 4]],
+        "stand.back": [[0, 39, 4], [60, 42, 44]],
+        "stand.end": [[57, 0, 4], [60, 40, 44]],
+    }
+    assert all(body.is_watertight for body in found.values())
+    volumes = [body.volume for body in found.values()]
+    assert volumes == pytest.approx([60 * 40 * 4, 60 * 40 * 3, 40 * 40 * 3], rel=1e-6)
+
+
+@pytest.mark.parametrize("suffix", SUFFIXES)
+def test_what_is_left_out_is_named(suffix: str) -> None:
+    (note,) = written(STAND, suffix).notes
+    assert render(note) == (
+        "warning[W0725]: `stand.note` has no thickness and is left out\n"
+        "  = hint: say how thick: `@thickness(3mm)` before it or what is around it\n"
+        "  = hint: or for all: `--thickness 3`"
+    )
+    made = written(STAND, suffix, thickness=2)
+    assert made.notes == ()
+    assert read_meshes(made.data, suffix)["stand.note"].volume == pytest.approx(200, rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("of", "suffix", "told"),
+    [
+        (
+            "drawing d { a = line(fixed((0, 0)), fixed((1, 0))) }",
+            ".stl",
+            ("E0917", "there is no body to write", "material is what the curves of a `solid` enclose"),
+        ),
+        (
+            structure("solid", "s", rectangle("r", 0, 0, 3e11, 2e11)),
+            ".stl",
+            (
+                "E0918",
+                "`s` cannot be made a solid of triangles: it is too large or too thin for them",
+                "look for a size that was written in another unit, or shrank to nothing",
+            ),
+        ),
+        (
+            structure("solid", "s", rectangle("r", 0, 0, 2e9, 1e9)),
+            ".3mf",
+            (
+                "E0918",
+                "`s` does not fit into 3MF: it reaches further than 1e+09 mm",
+                "look for a size or position that was written in another unit, or multiplied once too often",
+            ),
+        ),
+    ],
+)
+def test_what_is_no_mesh(of: str | SolvedStructure, suffix: str, told: tuple[str, str, str]) -> None:
+    assert refused(of, suffix, thickness=1) == told
+
+
+def test_colours_and_materials() -> None:
+    import zipfile
+
+    made = zipfile.ZipFile(io.BytesIO(written(STAND, ".3mf").data)).read("3D/3dmodel.model").decode()
+    assert 'unit="millimeter"' in made
+    assert '<base name="birch" displaycolor="#FF6347FF"/>' in made
+    assert made.count("<item ") == 3
+
+
+def test_a_plate_with_many_holes() -> None:
+    count = large(2500)
+    holes = [circle(f"c[{k}]", 10 * (k % 50), 10 * (k // 50), 3) for k in range(count)]
+    m = model(structure("solid", "s", rectangle("r", -10, -10, 500, 500), structure("hole", "h", *holes)))
+    body = only(written(m, ".stl", thickness=2).data, ".stl")
+    assert body.is_watertight
+    assert body.euler_number == 2 - 2 * count
+    chord = 1e-4 * 510  # so far at most from the rims
+    low, high = (2 * (510**2 - count * math.pi * r**2) for r in (3 + chord, 3 - chord))
+    assert low < body.volume < high
+    assert isinstance(draw(m)[0].bodies[0].region.faces[0].holes[0].pieces[0], Circle)
+
+
+def test_a_format_needs_no_package_of_another() -> None:
+    """In a process of its own, which has loaded nothing yet."""
+    said = (
+        "import sys; sys.modules['lib3mf'] = sys.modules['OCP'] = None; import aidl_lang\n"
+        "made = aidl_lang.compile('@thickness(2mm) solid a { b = circle(radius: 4) }')\n"
+        "for suffix in ('.stl', '.svg', '.dxf', '.pdf', '.png', '.json'): assert made.export(suffix)\n"
+    )
+    subprocess.run([sys.executable, "-c", said], check=True, timeout=120)

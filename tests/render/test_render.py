@@ -1,8 +1,9 @@
-"""Diagnostics as they look on a terminal."""
+"""Diagnostics as they look on a terminal, and as a language model reads them."""
 
 from __future__ import annotations
 
 import io
+import re
 from textwrap import dedent
 
 import pytest
@@ -10,7 +11,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix, Label
-from aidl_lang.common.render import TerminalStyle, render, wants_colour
+from aidl_lang.common.render import TerminalStyle, compact, render, wants_colour
+from aidl_lang.common.render.excerpt import escape, width_of
 from aidl_lang.common.source import SourceFile, Span
 
 PART = SourceFile(
@@ -107,8 +109,6 @@ def test_very_long_line_is_cut_around_the_span() -> None:
 
 
 def test_colour_changes_nothing_but_colour() -> None:
-    import re
-
     found = Diagnostic(
         "E0401", "out", span("plate.center"), "x", fix=Fix("mend", (Edit(span("plate.center"), "origin"),))
     )
@@ -151,3 +151,80 @@ def test_any_span_of_any_text_can_be_rendered(text: str, data: st.DataObject) ->
     page = render(found, width=50)
     assert "\x1b" not in page
     assert "^" in page
+    assert all(width_of(line) <= 50 + len(" label") for line in page.splitlines() if "…" in line)
+
+
+# --- In few words --------------------------------------------------------------------------------
+
+
+def test_errors_come_first_and_what_repeats_is_counted() -> None:
+    source = SourceFile("part.aidl", "\n".join(f"name_{k}" for k in range(40)))
+    many = [
+        Diagnostic(f"{'WE'[k % 2]}02{k % 4:02}", f"number {k}", span(f"name_{k}", source)) for k in range(40)
+    ]
+    blocks = compact(many).split("\n\n")
+    assert [b.partition(":")[0] for b in blocks[:4]] == [
+        "error E0201 line 2",
+        "error E0203 line 4",
+        "error E0201 line 6",
+        "error E0203 line 8",
+    ]
+    assert len(blocks) == 16
+    codes = ("E0201", "E0203", "W0200", "W0202")
+    assert blocks[-4:] == [f"and 7 more {code}, to be mended alike" for code in codes]
+
+
+def test_fixes_are_lines_to_write() -> None:
+    source = SourceFile("part.aidl", "one\ntwo\nthree\nfour\n")
+
+    def fix(*edits: tuple[str, str]) -> list[str]:
+        made = Fix("mend", tuple(Edit(span(old, source), new) for old, new in edits))
+        return compact([Diagnostic("E0101", "wrong", span("two", source), fix=made)]).splitlines()[2:]
+
+    assert fix(("two", "2")) == ["  fix (mend): line 2 becomes", "    2"]
+    assert fix(("two\n", "")) == ["  fix (mend): line 2 goes"]
+    assert fix(("two\nthree", "2\n3")) == ["  fix (mend): lines 2-3 become", "    2", "    3"]
+    assert fix(("one\n", "one\n1.5\n")) == ["  fix (mend): after line 1 write", "    1.5"]
+    assert fix(("one", "1"), ("four", "4")) == [
+        "  fix (mend): line 1 becomes",
+        "    1",
+        "  and: line 4 becomes",
+        "    4",
+    ]
+
+
+def test_what_a_program_holds_cannot_break_the_form() -> None:
+    source = SourceFile("a\nb.aidl", "x\x1b[31m" + "y" * 500)
+    lines = compact([Diagnostic("E0101", "two\nlines", Span(source, 0, 1))]).splitlines()
+    assert lines[0] == "error E0101 line 1: two lines"
+    assert "\x1b" not in lines[1]
+    assert len(lines[1]) < 220
+
+
+# --- Characters ----------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("hostile", "visible"),
+    [
+        ("\x1b[2J", "␛[2J"),
+        ("\x07", "␇"),
+        ("a\rb", "a␍b"),
+        ("\x7f", "␡"),
+        ("\x9b31m", "<U+009B>31m"),
+        ("\u202eabc", "<U+202E>abc"),
+        ("\u2028", "<U+2028>"),
+        ("\ud800", "<U+D800>"),
+        ("two\nlines", "two\nlines"),
+        ("naïve 世界 ½", "naïve 世界 ½"),
+    ],
+)
+def test_escape(hostile: str, visible: str) -> None:
+    assert escape(hostile) == visible
+
+
+@given(st.text())
+def test_escaped_text_can_be_printed(text: str) -> None:
+    safe = escape(text)
+    safe.encode("utf-8")
+    assert not any(ord(char) < 0x20 or 0x7F <= ord(char) < 0xA0 for char in safe.replace("\n", ""))

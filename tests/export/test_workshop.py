@@ -1,4 +1,6 @@
-"""The workshop example of a Raspberry Pi case: every panel in every format, and all of them put together."""
+"""Examples of the workshop in the files as they are cut: a name sign of one piece, and a Raspberry Pi case,
+every panel in every format, and all of them put together.
+"""
 
 from __future__ import annotations
 
@@ -9,9 +11,12 @@ import re
 from functools import cache
 from typing import Any
 
+import ezdxf
 import numpy as np
 import pypdfium2
 import pytest
+from shapely.geometry import MultiPolygon, Polygon
+from shapely.geometry.base import BaseGeometry
 from svgelements import SVG
 from svgelements import Path as SvgPath
 
@@ -21,6 +26,77 @@ from aidl_lang.export.profiles import PROFILES
 from tests.compiled import model
 from tests.documents import ROOT
 from tests.export.readers import Loop, read_dxf, read_meshes, united
+from tests.export.test_dxf import is_closed, ring
+
+WORKSHOP = ROOT / "examples" / "workshop"
+TEXT = (WORKSHOP / "name_sign.aidl").read_text("utf-8")
+STENCIL = ", stencil: bridge"
+
+
+@cache
+def sign(text: str = TEXT) -> Model:
+    found = model(text)
+    assert found.ok
+    return found
+
+
+def svg_paths(data: bytes) -> list[SvgPath]:
+    return list(SVG.parse(io.BytesIO(data), ppi=25.4).elements(lambda e: isinstance(e, SvgPath)))
+
+
+def size_on_paper(data: bytes) -> list[float]:
+    with pypdfium2.PdfDocument(data) as made:
+        assert len(made) == 1
+        return [side * 25.4 / 72 for side in made[0].get_size()]
+
+
+def left_over(made: Model) -> BaseGeometry:
+    """What is left of the plate, read off the DXF with arcs in chords of a micrometre."""
+    rest: BaseGeometry = Polygon()
+    for entity in ezdxf.read(io.StringIO(made.export("dxf").decode())).modelspace():
+        if entity.dxf.layer in ("solid", "hole"):
+            assert is_closed(entity)
+            rest = rest.symmetric_difference(Polygon(ring(entity, 1e-3)))
+    return rest
+
+
+def test_no_piece_falls_out() -> None:
+    rest = left_over(sign())
+    assert isinstance(rest, Polygon)
+    assert rest.area == pytest.approx(sign().measure().area, rel=1e-4)
+    assert sign().diagnostics == []
+
+
+def test_without_bridges_pieces_fall_out_and_are_told() -> None:
+    """A, two R, O and the two of B: six."""
+    loose = sign(TEXT.replace(STENCIL, ""))
+    rest = left_over(loose)
+    assert isinstance(rest, MultiPolygon)
+    assert len(rest.geoms) == 7
+    (told,) = [d for d in loose.diagnostics if d.code == "W0714"]
+    assert told.message.startswith("6 pieces fall out of solid `name_sign`")
+    assert told.fix is not None
+
+
+def test_engraving_comes_before_the_cuts() -> None:
+    """In every file that a cutter follows; the line under the name is followed and not filled."""
+    options = Options(profile=PROFILES["lightburn"])
+    dxf = sign()._compiled.exported(".dxf", options).data.decode()
+    layers = list(dict.fromkeys(e.dxf.layer for e in ezdxf.read(io.StringIO(dxf)).modelspace()))
+    assert [layer.rpartition("-")[2] for layer in layers] == ["engrave", "inner", "outer"]
+    svg = sign()._compiled.exported(".svg", options).data
+    operations = [p.values["data-operation"] for p in svg_paths(svg)]
+    assert list(dict.fromkeys(operations)) == ["engrave", "inner", "outer"]
+
+
+def test_it_is_as_thick_as_said_in_space_and_as_large_on_paper() -> None:
+    (solid,) = read_meshes(sign().export("stl"), ".stl").values()
+    assert solid.is_watertight
+    assert solid.volume == pytest.approx(4 * sign().measure().area, rel=1e-3)
+    width, height = size_on_paper(sign().export("pdf"))
+    assert width > 200
+    assert height > 80
+
 
 PANELS = ("base", "lid", "front", "back", "right", "left")
 HOLES = {"base": 4, "lid": 9, "front": 4, "back": 0, "right": 3, "left": 1}
@@ -31,7 +107,7 @@ SHEET = (300.0, 200.0)
 
 @cache
 def case() -> Model:
-    found = model((ROOT / "examples" / "workshop" / "pi_case.aidl").read_text("utf-8"))
+    found = model((WORKSHOP / "pi_case.aidl").read_text("utf-8"))
     assert found.ok
     assert found.diagnostics == []
     return found
@@ -47,8 +123,7 @@ def sheet(suffix: str, **options: Any) -> bytes:
 
 
 def test_svg_and_pdf_are_as_large_as_the_sheet_and_hold_as_much() -> None:
-    svg = SVG.parse(io.BytesIO(sheet(".svg")), ppi=25.4)
-    paths = list(svg.elements(lambda e: isinstance(e, SvgPath)))
+    paths = svg_paths(sheet(".svg"))
     by_operation = {
         op: [p for p in paths if p.values["data-operation"] == op] for op in ("inner", "outer", "fill")
     }
@@ -59,9 +134,8 @@ def test_svg_and_pdf_are_as_large_as_the_sheet_and_hold_as_much() -> None:
         assert right < SHEET[0] - 2.9
         assert bottom < SHEET[1] - 2.9
     assert re.search(rb'width="300mm"', sheet(".svg"))
+    assert size_on_paper(sheet(".pdf")) == pytest.approx(SHEET, abs=1e-3)
     with pypdfium2.PdfDocument(sheet(".pdf")) as made:
-        assert len(made) == 1
-        assert [side * 25.4 / 72 for side in made[0].get_size()] == pytest.approx(SHEET, abs=1e-3)
         assert len(list(made[0].get_objects())) == len(paths)
 
 
