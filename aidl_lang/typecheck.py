@@ -21,10 +21,9 @@ from aidl_lang.checking.calls import (
     counting_params,
     find_cycles,
 )
-from aidl_lang.checking.facts import Fact, of_symbol
+from aidl_lang.checking.facts import Fact, compare, of_symbol
 from aidl_lang.checking.infer import Inference
 from aidl_lang.checking.library import Library
-from aidl_lang.checking.members import compare
 from aidl_lang.checking.rules import a, shown
 from aidl_lang.checking.subset import Variant, check_subset
 from aidl_lang.checking.symbols import Resolution, word_meant
