@@ -168,7 +168,8 @@ def unknown_name(resolver: Resolver, node: ast.Name, scope: SymbolScope) -> None
         resolver.report("E0206", message, node, label="a name alone means a value")
         return
     hint = _VALUES.get(fold(name))
-    like = ["self"] if fold(name) == "this" else scope.near_values(name) if hint is None else []
+    like = nearest(name, scope.visible(), 2) if hint is None else []
+    like = ["self"] if fold(name) == "this" else like
     hints: tuple[str, ...] = (hint,) if hint else ()
     if not like and not hints:
         hints = ("names are declared with `param`, `let` or `name = …`",)
