@@ -274,7 +274,6 @@ def arguments(check: Inference, node: ast.Call) -> list[ast.Expression]:
 
 
 def _spell(check: Inference, node: ast.Call, nodes: Nodes, fits: Sequence[Binding]) -> None:
-    """Notes the parameters that argument names stand for."""
     for index, argument in enumerate(node.arguments, len(nodes) - len(node.arguments)):
         meant = parameter_of(index, fits) if argument.name is not None else None
         if meant is not None and argument.name is not None and meant != argument.name.text:

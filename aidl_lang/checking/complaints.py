@@ -30,7 +30,6 @@ def _words(*lines: str) -> frozenset[str]:
 
 
 def _by_word(*rows: tuple[str, str]) -> Mapping[str, str]:
-    """Returns what stands behind the words of each row, by word."""
     return {fold(word): said for words, said in rows for word in words.split()}
 
 
@@ -252,7 +251,6 @@ def _is_built_in(scope: SymbolScope, name: str) -> bool:
 
 
 def _as_template(node: ast.Structure) -> Fix | None:
-    """Returns the fix that gives a structure a parameter list, so that it can be called."""
     if node.indices:
         return None
     behind = Span(node.name.span.source, node.name.span.end, node.name.span.end)

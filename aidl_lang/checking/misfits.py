@@ -123,7 +123,6 @@ def _closeness(miss: Mismatch, given: Given) -> tuple[int, int, int, int, int]:
 
 
 def _knows(signature: Signature, word: str) -> bool:
-    """Tells whether a word is a parameter, by its name or by a synonym."""
     known = signature.by_fold
     pair = PAIRS.get(fold(word), ("", ""))
     meanings = (word, *PARAMETERS.get(fold(word), ()))

@@ -437,7 +437,6 @@ def _note_missing(statement: ast.Import, scope: SymbolScope) -> None:
 
 
 def _bring(source: SymbolScope, scope: SymbolScope, names: set[str] | None) -> None:
-    """Enters the file-level definitions of an imported file, all or some of them."""
     for name, symbol in source.values.items():
         if (names is None or name in names) and symbol.kind in (SymbolKind.PARAM, SymbolKind.LET):
             scope.values.setdefault(name, symbol)

@@ -318,7 +318,6 @@ def _is_still(modules: Iterable[ast.Module]) -> bool:
 
 
 def _attributes(modules: Iterable[ast.Module]) -> Iterator[tuple[ast.Node, ast.Attribute]]:
-    """Yields the statements with an `@allow`, those outside first."""
     for module in modules:
         if ast.ALLOW not in module.source.text.lower():
             continue

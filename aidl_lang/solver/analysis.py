@@ -268,7 +268,6 @@ def _times(matrix: Sparse, dense: Floats) -> Floats:
 
 
 def _ranks(rows: Floats, key: Ints, keys: int, least: float) -> Ints:
-    """Returns the rank of the rows (p, d) of each key."""
     order = Sorted(key, keys)
     found = np.zeros(keys, dtype=np.intp)
     for members in _lots(order.count):

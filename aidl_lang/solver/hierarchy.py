@@ -477,7 +477,6 @@ def riding_depths(problem: Problem, depths: Ints) -> Ints:
 
 
 def _in_any_row(problem: Problem) -> Bools:
-    """Returns the unknowns (n,) that occur in any row."""
     found = expression.mentioned(problem.tape, problem.rows.expression.tolist())
     return marked(np.array(found, dtype=np.intp), len(problem.initial))
 

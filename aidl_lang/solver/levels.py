@@ -137,7 +137,6 @@ class Levels:
         return violations(self.problem, nodes) <= self.settings.tolerance * self.problem.rows.scale
 
     def _all(self, holding: Bools) -> Bools:
-        """Returns the mask of constraints (c,) all of whose rows hold."""
         return ~marked(self.problem.rows.constraint[~holding], len(self.problem.holder))
 
     # -- parts and scopes
@@ -296,7 +295,6 @@ class Levels:
         return x, solved, hopeless
 
     def _solve_alone(self, program: ArrayProgram, rows: Ints, x: Floats) -> End:
-        """Solves one system with all care; moves `x` there if that succeeds."""
         columns, metric = program.columns, self.metric.of(program.columns)
         scales, at_most = (metric.scale, self.problem.rows.scale[rows]), self.problem.rows.at_most[rows]
         system = System(program, x[columns], *scales, at_most, None, metric.longest, metric.unit)
@@ -310,7 +308,6 @@ class Levels:
 def _stacks(
     program: ArrayProgram, of_row: Sorted, of_column: Sorted, wanted: Bools, at_most: Bools
 ) -> Iterator[_Stack]:
-    """Yields the wanted systems stacked by shape."""
     entry_system = of_row.part[program.entry_rows]
     bent = marked(of_row.part[~program.affine], len(wanted))
     shape = of_row.count * (int(of_column.count.max(initial=0)) + 1) + of_column.count

@@ -514,7 +514,6 @@ def spare_sizes(hierarchy: Hierarchy, scope: Scope, before: dict[int, float]) ->
 
 
 def _moved(hierarchy: Hierarchy, before: dict[int, float]) -> dict[int, float]:
-    """Returns the move of each unknown that moved, in units of its scale."""
     scale, unknowns = hierarchy.problem.scale, hierarchy.values.unknowns
     found = {u: float((unknowns[u] - x) / scale[u]) for u, x in before.items()}
     return {u: step for u, step in found.items() if abs(step) > STILL}

@@ -132,7 +132,6 @@ class SparseMatrix:
         return LeastNorm(z, multipliers, rest if outside else None, False)
 
     def _square(self, y: Floats) -> LeastNorm | None:
-        """Solves a square system by LU; returns None if the result is not to be trusted."""
         factors = self.lu
         if factors is None:
             return None

@@ -461,7 +461,6 @@ class _Printer(ExpressionPrinter):
         self._leaf(self.expression(message, OR), indent + INDENT)
 
     def _long_function(self, node: ast.FunctionDefinition, document: PrintDocument, indent: int) -> None:
-        """Prints a function with its value on a line of its own if that is enough."""
         head = doc("fn ", self._parameters(node.name, node.parameters), " =")
         value = self.expression(node.value)
         if indent + head.width <= WIDTH and indent + INDENT + value.width <= WIDTH:
@@ -471,7 +470,6 @@ class _Printer(ExpressionPrinter):
             self._leaf(document, indent)
 
     def _long(self, node: ast.Statement, indent: int, constraints: bool) -> None:
-        """Prints a statement whose blocks stand on lines of their own."""
         self._leaf(doc(self._head(node, constraints), " {"), indent)
         block, *others = self._blocks(node)
         inner = constraints or isinstance(node, ast.Constrain | ast.ConstraintDefinition)
