@@ -200,7 +200,9 @@ def unknown_callable(resolver: Resolver, node: ast.Call, scope: SymbolScope) -> 
         resolver.report(code, headline, node.callee, hints=(hint,) if hint else ())
         return
     if node.receiver is not None and not node.arguments and fold(name) in FIELDS:
-        message, fix = called_field(node)
+        parentheses = Span(node.span.source, node.callee.span.end, node.span.end)
+        fix = Fix("leave out the parentheses", (Edit(parentheses, ""),), is_sure=True)
+        message = f"`{name}` is a field, which is named without parentheses"
         resolver.report("E0206", message, node.callee, fix=fix)
         return
     is_condition = resolver.condition is node
@@ -255,14 +257,6 @@ def _as_template(node: ast.Structure) -> Fix | None:
         return None
     behind = Span(node.name.span.source, node.name.span.end, node.name.span.end)
     return Fix(f"make `{node.name.text}` a template", (Edit(behind, "()"),))
-
-
-def called_field(node: ast.Call) -> tuple[str, Fix]:
-    """Returns message and fix for a field that is called: `c.center()`."""
-    at = node.callee.span
-    parentheses = Edit(Span(at.source, at.end, node.span.end), "")
-    message = f"`{node.callee.text}` is a field, which is named without parentheses"
-    return message, Fix("leave out the parentheses", (parentheses,), is_sure=True)
 
 
 def declared_twice(resolver: Resolver, name: ast.Identifier, earlier: Symbol) -> None:

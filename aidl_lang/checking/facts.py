@@ -436,8 +436,7 @@ def member(check: Inference, node: ast.Member) -> Fact:
 
 def _of_file(check: Inference, node: ast.Member, space: Symbol) -> Fact:
     assert space.scope is not None
-    if (scope := space.scope.spaces.get(space.name)) is None:
-        return UNKNOWN
+    scope = space.scope.spaces[space.name]
     if (key := find(node.name.text, scope.values)) is None:
         return _no_member(check, node, "the file", list(scope.values))
     _means(check, node, scope.values[key])
