@@ -10,10 +10,9 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from aidl_lang.checking import calls, rules, types
 from aidl_lang.checking.builtins import NAMING
-from aidl_lang.checking.facts import Fact, of_symbol
+from aidl_lang.checking.facts import Fact, compare, of_symbol
 from aidl_lang.checking.infer import Inference
 from aidl_lang.checking.library import Library
-from aidl_lang.checking.members import compare
 from aidl_lang.checking.rules import a, shown
 from aidl_lang.checking.subset import Variant, check_subset
 from aidl_lang.checking.symbols import Resolution, word_meant

@@ -449,7 +449,7 @@ def _in_numbers(wording: Wording, node: ast.Expression, evaluate: Evaluate) -> s
     """Returns a sum or product with numbers in place of names; empty for anything else."""
     if not _is_calculated(node):
         return ""
-    from aidl_lang.syntax.expression_printer import format_expression
+    from aidl_lang.syntax.printer import format_expression
 
     return format_expression(_substituted(wording, node, evaluate))
 

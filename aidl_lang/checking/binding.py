@@ -271,7 +271,6 @@ def in_order(candidates: Sequence[Signature], given: Given) -> Mapping[int, str]
 
 
 def _following(given: Given) -> Sequence[int]:
-    """Returns the arguments without a name behind the first that has one, by their index."""
     first = next((i for i, g in enumerate(given) if g.name is not None), len(given))
     return [i for i in range(first, len(given)) if given[i].name is None]
 
@@ -360,7 +359,6 @@ def _means(word: str, parameter: str) -> bool:
 
 
 def _joined(signature: Signature, read: _Read) -> _Read:
-    """Turns two coordinates into the point they name."""
     for x, y, meanings in COORDINATES:
         target = next((m for m in meanings if m in signature.by_fold), None)
         found = {fold(g.name): (g, s) for g, s in read if g.name and fold(g.name) not in signature.by_fold}

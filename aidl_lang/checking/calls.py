@@ -274,7 +274,6 @@ def arguments(check: Inference, node: ast.Call) -> list[ast.Expression]:
 
 
 def _spell(check: Inference, node: ast.Call, nodes: Nodes, fits: Sequence[Binding]) -> None:
-    """Notes the parameters that argument names stand for."""
     for index, argument in enumerate(node.arguments, len(nodes) - len(node.arguments)):
         meant = parameter_of(index, fits) if argument.name is not None else None
         if meant is not None and argument.name is not None and meant != argument.name.text:
@@ -588,20 +587,15 @@ def _check_logic(infer: Inference, node: ast.Expression) -> None:
             _check_logic(infer, left)
             _check_logic(infer, right)
         case ast.Binary(operator="or", left=left, right=right) if infer.fact(node).reads:
-            _cannot(
-                infer,
-                node,
-                "or",
+            hint = (
                 f"constrain the one you mean, as in `constrain {shown(left)}`, or let an `if` over "
-                "constants choose; `assert` takes `or`",
-                Fix("constrain the first of them", (Edit(node.span, left.span.text),)),
+                "constants choose; `assert` takes `or`"
             )
+            fix = Fix("constrain the first of them", (Edit(node.span, left.span.text),))
+            infer.misfit(rules.no_equation("or", hint), node, fix)
         case ast.Unary(operator="not", operand=operand) if infer.fact(node).reads:
             hint = f"constrain what shall hold instead; `assert not {shown(operand)}` checks it"
-            _cannot(infer, node, "not", hint)
+            infer.misfit(rules.no_equation("not", hint), node)
         case ast.Comparison(operators=operators) if "!=" in operators and infer.fact(node).reads:
-            _cannot(infer, node, "!=", "say on which side, with `<=` or `>=` and a distance, or `assert` it")
-
-
-def _cannot(infer: Inference, node: ast.Expression, word: str, hint: str, fix: Fix | None = None) -> None:
-    infer.misfit(rules.no_equation(word, hint), node, fix)
+            hint = "say on which side, with `<=` or `>=` and a distance, or `assert` it"
+            infer.misfit(rules.no_equation("!=", hint), node)

@@ -30,7 +30,6 @@ def _words(*lines: str) -> frozenset[str]:
 
 
 def _by_word(*rows: tuple[str, str]) -> Mapping[str, str]:
-    """Returns what stands behind the words of each row, by word."""
     return {fold(word): said for words, said in rows for word in words.split()}
 
 
@@ -168,7 +167,8 @@ def unknown_name(resolver: Resolver, node: ast.Name, scope: SymbolScope) -> None
         resolver.report("E0206", message, node, label="a name alone means a value")
         return
     hint = _VALUES.get(fold(name))
-    like = ["self"] if fold(name) == "this" else scope.near_values(name) if hint is None else []
+    like = nearest(name, scope.visible(), 2) if hint is None else []
+    like = ["self"] if fold(name) == "this" else like
     hints: tuple[str, ...] = (hint,) if hint else ()
     if not like and not hints:
         hints = ("names are declared with `param`, `let` or `name = …`",)
@@ -200,7 +200,9 @@ def unknown_callable(resolver: Resolver, node: ast.Call, scope: SymbolScope) -> 
         resolver.report(code, headline, node.callee, hints=(hint,) if hint else ())
         return
     if node.receiver is not None and not node.arguments and fold(name) in FIELDS:
-        message, fix = called_field(node)
+        parentheses = Span(node.span.source, node.callee.span.end, node.span.end)
+        fix = Fix("leave out the parentheses", (Edit(parentheses, ""),), is_sure=True)
+        message = f"`{name}` is a field, which is named without parentheses"
         resolver.report("E0206", message, node.callee, fix=fix)
         return
     is_condition = resolver.condition is node
@@ -251,19 +253,10 @@ def _is_built_in(scope: SymbolScope, name: str) -> bool:
 
 
 def _as_template(node: ast.Structure) -> Fix | None:
-    """Returns the fix that gives a structure a parameter list, so that it can be called."""
     if node.indices:
         return None
     behind = Span(node.name.span.source, node.name.span.end, node.name.span.end)
     return Fix(f"make `{node.name.text}` a template", (Edit(behind, "()"),))
-
-
-def called_field(node: ast.Call) -> tuple[str, Fix]:
-    """Returns message and fix for a field that is called: `c.center()`."""
-    at = node.callee.span
-    parentheses = Edit(Span(at.source, at.end, node.span.end), "")
-    message = f"`{node.callee.text}` is a field, which is named without parentheses"
-    return message, Fix("leave out the parentheses", (parentheses,), is_sure=True)
 
 
 def declared_twice(resolver: Resolver, name: ast.Identifier, earlier: Symbol) -> None:

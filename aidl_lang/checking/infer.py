@@ -12,7 +12,7 @@ from dataclasses import replace
 from functools import lru_cache, reduce
 from typing import Any, TypeVar
 
-from aidl_lang.checking import calls, facts, members, rules, units
+from aidl_lang.checking import calls, facts, rules, units
 from aidl_lang.checking.facts import NOTHING_READ, UNKNOWN, Fact, joined
 from aidl_lang.checking.library import Library
 from aidl_lang.checking.resolve import resolve
@@ -331,7 +331,7 @@ _INFER: dict[type, Callable[..., Fact]] = {
     ast.String: lambda self, node: Fact(TextType()),
     ast.Boolean: lambda self, node: Fact(TruthType()),
     ast.Name: Inference._name,
-    ast.Member: members.member,
+    ast.Member: facts.member,
     ast.Index: Inference._index,
     ast.Call: calls.call,
     ast.Point: Inference._point,
@@ -339,10 +339,10 @@ _INFER: dict[type, Callable[..., Fact]] = {
     ast.Comprehension: Inference._comprehension,
     ast.ForArguments: Inference._for_arguments,
     ast.IfArguments: Inference._if_arguments,
-    ast.Unary: members.unary,
-    ast.Binary: members.binary,
-    ast.Comparison: members.comparison,
-    ast.Membership: members.membership,
+    ast.Unary: facts.unary,
+    ast.Binary: facts.binary,
+    ast.Comparison: facts.comparison,
+    ast.Membership: facts.membership,
     ast.Range: Inference._range,
     ast.Conditional: Inference._conditional,
 }

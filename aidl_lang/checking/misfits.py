@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, TypeAlias
 
-from aidl_lang.checking.binding import FIELDS, PAIRS, PARAMETERS, in_order, select
-from aidl_lang.checking.complaints import called_field, did_you_mean, respell
+from aidl_lang.checking.binding import PAIRS, PARAMETERS, in_order, select
+from aidl_lang.checking.complaints import did_you_mean, respell
 from aidl_lang.checking.facts import body_of, is_number, is_point
 from aidl_lang.checking.rules import place_before, shown
 from aidl_lang.checking.types import (
@@ -38,10 +38,6 @@ Misses: TypeAlias = Sequence[Mismatch]
 def no_overload(
     check: Inference, node: ast.Call, nodes: Sequence[ast.Expression], given: Given, misses: Misses
 ) -> None:
-    if node.receiver is not None and not node.arguments and fold(node.callee.text) in FIELDS:
-        message, fix = called_field(node)
-        check.report("E0206", message, node.callee, fix=fix)
-        return
     for answer in _ANSWERS:
         if answer(check, node, given, misses):
             return
@@ -123,7 +119,6 @@ def _closeness(miss: Mismatch, given: Given) -> tuple[int, int, int, int, int]:
 
 
 def _knows(signature: Signature, word: str) -> bool:
-    """Tells whether a word is a parameter, by its name or by a synonym."""
     known = signature.by_fold
     pair = PAIRS.get(fold(word), ("", ""))
     meanings = (word, *PARAMETERS.get(fold(word), ()))

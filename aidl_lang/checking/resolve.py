@@ -17,7 +17,7 @@ Members (`a.b`) depend on what `a` is; the type checker decides them and enters 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, TypeAlias, TypeVar
+from typing import TypeAlias, TypeVar
 
 from aidl_lang.checking import complaints
 from aidl_lang.checking.builtins import ATTRIBUTES, CLIP, DERIVING, EVERYWHERE, PATTERNS, WORDED, is_word
@@ -45,11 +45,8 @@ from aidl_lang.checking.types import PARAMETER_TYPES, PUBLIC, Signature
 from aidl_lang.common.diagnostics import MOST_ERRORS, Diagnostic, Edit, Fix, Label, ordered
 from aidl_lang.common.names import fold, nearest
 from aidl_lang.common.prose import ticked
-from aidl_lang.common.world import WHOLE
+from aidl_lang.common.world import WHOLE, World
 from aidl_lang.syntax import ast
-
-if TYPE_CHECKING:
-    from aidl_lang.common.world import World
 
 
 def resolve(module: ast.Module, world: World | None, library: Library) -> Resolution:
@@ -437,7 +434,6 @@ def _note_missing(statement: ast.Import, scope: SymbolScope) -> None:
 
 
 def _bring(source: SymbolScope, scope: SymbolScope, names: set[str] | None) -> None:
-    """Enters the file-level definitions of an imported file, all or some of them."""
     for name, symbol in source.values.items():
         if (names is None or name in names) and symbol.kind in (SymbolKind.PARAM, SymbolKind.LET):
             scope.values.setdefault(name, symbol)

@@ -13,7 +13,7 @@ from aidl_lang.checking.library import Lazy, Library
 from aidl_lang.checking.types import Signature
 from aidl_lang.common import resources
 from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix
-from aidl_lang.common.names import Spellings, find, fold, nearest
+from aidl_lang.common.names import Spellings, find, fold
 from aidl_lang.common.prose import with_article
 from aidl_lang.common.records import record
 from aidl_lang.common.source import SourceFile, Span
@@ -173,9 +173,6 @@ class SymbolScope:
         """Tells whether a name may have been in a file that could not be imported, which was reported."""
         return any(scope.missing is None or name in scope.missing for scope in self.chain())
 
-    def near_values(self, name: str) -> list[str]:
-        return nearest(name, [*self.visible(), "origin", "x_axis", "y_axis", "self", "pi"], 2)
-
 
 def word_meant(name: str, known: Iterable[str]) -> str | None:
     """Returns the one of a few fixed words that a name means."""
@@ -321,7 +318,6 @@ def _is_still(modules: Iterable[ast.Module]) -> bool:
 
 
 def _attributes(modules: Iterable[ast.Module]) -> Iterator[tuple[ast.Node, ast.Attribute]]:
-    """Yields the statements with an `@allow`, those outside first."""
     for module in modules:
         if ast.ALLOW not in module.source.text.lower():
             continue

@@ -290,7 +290,6 @@ class Violation:
 
     @property
     def _operation(self) -> str | None:
-        """The name of the operation on geometry that the target calls; None if it is none."""
         item = self.target.node
         return operation(self.infer, item.value) if isinstance(item, ast.ExpressionStatement) else None
 
@@ -317,7 +316,6 @@ class Violation:
     # --- The fix ---------------------------------------------------------------------------------
 
     def _relation(self, ancestor: ast.Node) -> str | None:
-        """Returns the constraint as the ancestor can state it; None if it cannot."""
         move = Relocation(self.site, ancestor, self.infer)
         if not move.is_possible:
             return None
@@ -420,7 +418,6 @@ def _literal(value: tuple[float, float] | float | None, pair: bool, fallback: fl
 
 
 def _digits(value: float, fallback: float) -> str:
-    """Returns six significant digits, without noise around zero."""
     if not math.isfinite(value):
         value = fallback
     return f"{0.0 if abs(value) < 1e-9 else value:.6g}"
@@ -592,7 +589,6 @@ class _Walker:
         return chosen.parameter_of(index), chosen.kind_of(index) or ANY
 
     def _is_field(self, call: ast.Call, name: str) -> bool:
-        """Tells whether a parameter of a call is also a field of its result."""
         fact = self.infer.fact(call)
         if isinstance(fact.of, ast.ShapeDefinition):
             return True
@@ -613,7 +609,6 @@ class _Walker:
             self._geometry([FarReference(rotated, None, is_size=True)], rotated, site)
 
     def _geometry(self, targets: Sequence[FarReference], whole: ast.Expression, site: StatementSite) -> None:
-        """Checks rule 1 for an expression that geometry is made with."""
         own = ReadPlace(site.home)
         for target in targets:
             far = [p for p in self._reads(target.node) if p != own]

@@ -14,7 +14,7 @@ from aidl_lang.common.records import record
 from aidl_lang.solver.dependence import Equations, Redundancy, dependent_rows, redundancies
 from aidl_lang.solver.expression import Bools, Floats, Ints
 from aidl_lang.solver.hierarchy import Riding, groups_riding
-from aidl_lang.solver.linear import DOUBT, RANK, Sparse, each_once, others
+from aidl_lang.solver.linear import DOUBT, RANK, Sparse, each_once, marked, others, places
 from aidl_lang.solver.problem import Problem, Solution
 from aidl_lang.solver.valuation import LARGE, Sorted, connected, linearise
 
@@ -138,9 +138,7 @@ class _Parts:
         links = [np.concatenate(ends) for ends in zip(equations.links, observables.links, strict=True)]
         label = connected(links[0], links[1], unknowns)
         seen = each_once(label[observables.columns])
-        number = np.full(unknowns, -1)
-        number[seen] = np.arange(len(seen))
-        self.part = number[label]
+        self.part = places(seen, unknowns)[label]
         """The part of each unknown; -1 for unknowns that no observable sees."""
         self.columns = Sorted(self.part, len(seen))
         self.equation_part = _part_of_rows(equations, self.part)
@@ -165,8 +163,7 @@ def _part_of_rows(matrix: Sparse, part: Ints) -> Ints:
 
 
 def _settle_small(parts: _Parts, members: Ints, found: Mobility) -> None:
-    slot = np.full(len(parts.columns.count), -1)
-    slot[members] = np.arange(len(members))
+    slot = places(members, len(parts.columns.count))
     jacobian = _stacked(parts.equations, parts.equation_part, parts.rows, parts.columns, slot)
     observed = _stacked(parts.observables, parts.observable_part, parts.seen, parts.columns, slot)
     if jacobian.shape[1]:
@@ -271,12 +268,10 @@ def _times(matrix: Sparse, dense: Floats) -> Floats:
 
 
 def _ranks(rows: Floats, key: Ints, keys: int, least: float) -> Ints:
-    """Returns the rank of the rows (p, d) of each key."""
     order = Sorted(key, keys)
     found = np.zeros(keys, dtype=np.intp)
     for members in _lots(order.count):
-        slot = np.full(keys, -1)
-        slot[members] = np.arange(len(members))
+        slot = places(members, keys)
         own = np.flatnonzero(slot[key] >= 0)
         stack = np.zeros((len(members), int(order.count[members].max()), rows.shape[1]))
         stack[slot[key[own]], order.place[own]] = rows[own]
@@ -396,8 +391,7 @@ def _equal_rows(problem: Problem, holding: Bools, order: Sequence[int] | None) -
     equal = np.flatnonzero(holding[rows.constraint] & ~rows.at_most)
     if order is None:
         return equal
-    rank = np.empty(len(problem.holder), dtype=np.intp)
-    rank[np.array(order, dtype=np.intp)] = np.arange(len(order))
+    rank = places(np.array(order, dtype=np.intp), len(problem.holder))
     return equal[np.argsort(rank[rows.constraint[equal]], kind="stable")]
 
 
@@ -408,9 +402,7 @@ def _equations(problem: Problem, equal: Ints, slopes: Sparse) -> tuple[Equations
     lengths = matrix.lengths()
     sloping = lengths > SINGULAR
     matrix = matrix.scaled(1.0 / np.where(sloping, lengths, 1.0), np.ones(len(problem.scale)))
-    silent = np.ones(len(rows.constraint), dtype=np.bool_)
-    silent[equal[sloping]] = False
-    other = set(rows.constraint[silent].tolist())
+    other = set(rows.constraint[~marked(equal[sloping], len(rows.constraint))].tolist())
     owners = dict.fromkeys(rows.constraint[equal[sloping]].tolist())
     plain = [owner for owner in owners if owner not in other]
     sloped = np.flatnonzero(sloping)

@@ -28,7 +28,7 @@ from aidl_lang.solver.expression import (
     partials_of,
     values_of,
 )
-from aidl_lang.solver.linear import Matrix
+from aidl_lang.solver.linear import Matrix, marked, places
 from aidl_lang.solver.newton import GOLDEN
 
 DENSE = 4096
@@ -260,8 +260,7 @@ class ArrayFreezing:
 
     def branches(self, roots: Ints) -> list[tuple[int, int]]:
         """Returns the branching nodes below these (r,) through active branches, and the choice at each."""
-        below = np.zeros(len(self.values) + 1, dtype=np.bool_)  # the last one is for missing operands
-        below[roots] = True
+        below = marked(roots, len(self.values) + 1)  # the last one is for missing operands
         added = np.arange(len(self._schedule.tape), len(self.values))
         for nodes in (added, *reversed(self._schedule.by_level)):
             below[self._operands[nodes[below[nodes]]]] = True
@@ -347,21 +346,18 @@ class ArrayFreezing:
         """Returns the program of the rows at these nodes (r,), each of which varies."""
         layout = self._lay_out(roots)
         count, width = len(self.values), len(self._free)
-        nodes = _distinct(layout.nodes, count)
-        columns = _distinct(layout.unknown, width)
+        nodes = np.flatnonzero(marked(layout.nodes, count))
+        columns = np.flatnonzero(marked(layout.unknown, width))
         indptr = np.zeros(len(roots) + 1, dtype=np.intp)
         np.cumsum(np.bincount(layout.row, minlength=len(roots)), out=indptr[1:])
-        affine = np.ones(len(roots), dtype=np.bool_)
-        affine[layout.rows[self._curved(layout.nodes)]] = False
-        place = np.empty(width, dtype=np.intp)
-        place[columns] = np.arange(len(columns))
+        affine = ~marked(layout.rows[self._curved(layout.nodes)], len(roots))
         input_of = np.empty(width, dtype=np.intp)
         input_of[self._schedule.unknowns] = self._schedule.inputs
         return ArrayProgram(
             roots,
             columns,
             indptr,
-            place[layout.unknown],
+            places(columns, width)[layout.unknown],
             affine,
             np.arange(len(roots)),
             input_of[columns],
@@ -435,13 +431,6 @@ def _add_by_level(
     for level in np.flatnonzero(np.bincount(levels)).tolist():
         members = np.flatnonzero(levels == level)
         known.setdefault(level, []).append(tuple(column[members] for column in columns))
-
-
-def _distinct(numbers: Ints, count: int) -> Ints:
-    """Returns the different numbers below `count` that occur, ascending."""
-    found = np.zeros(count, dtype=np.bool_)
-    found[numbers] = True
-    return np.flatnonzero(found)
 
 
 def _slope(batch: Batch, values: Floats, slopes: Floats) -> tuple[Floats, Bools]:

@@ -328,7 +328,6 @@ class _Attempt:
         ]
 
     def _judge(self, end: End) -> Verdict:
-        """Returns the verdict of the original expressions at the current values."""
         worst = 0.0
         for row, softness in zip(self.task.rows, self.task.softness, strict=True):
             if not softness:
@@ -338,7 +337,6 @@ class _Attempt:
         return Verdict(End.CONTRARY if end is End.CONVERGED else end, worst)
 
     def _join_violated(self) -> bool:
-        """Takes up inequalities that came to be violated."""
         known = set(self.considered)
         others = ((i, row) for i, row in enumerate(self.task.rows) if i not in known)
         fresh = [i for i, row in others if not holds(row, self.values, self.settings.tolerance)]

@@ -274,7 +274,6 @@ class _ConflictSearch:
         return self.relaxations[key]
 
     def _candidates(self, best: dict[int, float]) -> Iterator[list[int]]:
-        """Yields sets that may fail, first those that are likely to be small."""
         hierarchy, scope = self.hierarchy, self.scope
         hierarchy.values.assign(best.items())
         accused = suspects(hierarchy, scope.constraints, scope.free)
@@ -311,7 +310,6 @@ class _ConflictSearch:
     # -- data of the explanation
 
     def _count(self, conflict: Sequence[int]) -> tuple[tuple[int, ...], int]:
-        """Returns the unknowns that could move for the conflict, and its number of equations."""
         hierarchy = self.hierarchy
         moving = tuple(sorted(hierarchy.mentioned(conflict) & self.scope.free))
         return moving, sum(row.relation is Relation.EQUAL for row in hierarchy.rows(conflict))
@@ -326,7 +324,6 @@ class _ConflictSearch:
         return frozenset(found)
 
     def _curved(self, conflict: Sequence[int]) -> bool:
-        """Tells whether the slopes of the rows depend on the place."""
         hierarchy = self.hierarchy
         free = sorted(self.scope.free)
         aside = perturbation(len(free)) * hierarchy.problem.scale[free]

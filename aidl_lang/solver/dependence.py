@@ -306,7 +306,6 @@ class _ImplicationTest:
         return False
 
     def _rows(self, place: Floats, rows: Ints, columns: Ints) -> tuple[Floats, Floats]:
-        """Returns residuals and gradients of rows in units of their scales."""
         values, matrix = linearise(self.problem.tape, place, self.expressions[rows])
         dense = matrix.dense(columns) * self.problem.scale[columns]
         return values / self.scales[rows], dense / self.scales[rows][:, None]

@@ -347,9 +347,6 @@ class TapeBuilder:
         self._splits: dict[int, tuple[tuple[int, ...], int]] = {}
         self._shifts: set[int] = set()
 
-    def __len__(self) -> int:
-        return len(self._ops)
-
     def constant(self, value: float) -> int:
         value = float(value) + 0.0  # -0.0 becomes 0.0
         key = (CONSTANT, value if value == value else "nan")
@@ -456,8 +453,6 @@ class TapeBuilder:
 
     def cubic_max(self, p0: int, p1: int, p2: int, p3: int) -> int:
         """Returns the node of the greatest value in [0, 1] of the cubic with these Bernstein coefficients."""
-        if p0 == p1 == p2 == p3:
-            return p0
         common, rests = self._apart((p0, p1, p2, p3))
         if common:
             return self._sum(common, self.cubic_max(*rests))
@@ -481,8 +476,6 @@ class TapeBuilder:
         added to several operands is added to the least (greatest) of these: the box of a rigid part is worked
         out once and moved with it.
         """
-        if not args:
-            raise ValueError("minimum and maximum take at least one operand")
         level = sorted(set(args))
         alike: dict[tuple[int, ...], list[int]] = {}
         for a in level:

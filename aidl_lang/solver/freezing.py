@@ -25,6 +25,7 @@ import numpy as np
 from aidl_lang.common.records import record
 from aidl_lang.solver.array_program import CANCELLED, TIE, ZERO, ArrayFreezing, ArrayProgram
 from aidl_lang.solver.expression import BRANCHING, PARTIALS, Floats, Op
+from aidl_lang.solver.linear import marked
 from aidl_lang.solver.valuation import (
     Affine,
     Compiled,
@@ -119,8 +120,7 @@ class Freezer:
 def _freeze_to_arrays(
     values: Valuation, roots: Sequence[Root], free: Iterable[int], flipped: frozenset[int]
 ) -> Frozen:
-    movable = np.zeros(len(values.unknowns), dtype=np.bool_)
-    movable[list(free)] = True
+    movable = marked(list(free), len(values.unknowns))
     differences = [root for root in roots if not isinstance(root, int)]
     further = itertools.count(len(values.nodes))
     nodes = np.array([root if isinstance(root, int) else next(further) for root in roots], dtype=np.intp)

@@ -19,7 +19,7 @@ from aidl_lang.solver import Stages, expression
 from aidl_lang.solver.branches import Metric, Task, Verdict, attempt, holds
 from aidl_lang.solver.expression import Bools, Floats, Ints, Op, mentioned
 from aidl_lang.solver.group import Group
-from aidl_lang.solver.linear import Sparse, each_once
+from aidl_lang.solver.linear import Sparse, each_once, marked
 from aidl_lang.solver.loosening import Scope, Tier, tiers_at
 from aidl_lang.solver.newton import Clock
 from aidl_lang.solver.problem import (
@@ -311,8 +311,8 @@ def solve(problem: Problem, settings: Settings = Settings(), memory: Memory | No
     violation, rows = hierarchy.violations(), problem.rows
     residuals = np.zeros(len(problem.holder))
     np.maximum.at(residuals, rows.constraint, violation)
-    satisfied = np.ones(len(problem.holder), dtype=np.bool_)
-    satisfied[rows.constraint[~(violation <= settings.tolerance * rows.scale)]] = False
+    broken = rows.constraint[~(violation <= settings.tolerance * rows.scale)]
+    satisfied = ~marked(broken, len(problem.holder))
     status = _status(satisfied[np.isnan(problem.weight)], hierarchy.timed_out)
     if recollection is not None:
         recollection.close(hierarchy.stages, status is Status.SOLVED and not hierarchy.failures)
@@ -442,7 +442,7 @@ def naming(problem: Problem) -> Naming:
     groups = len(problem.parent)
     if not problem.named:
         moved = problem.frame_of[_in_any_row(problem)]
-        frames = _marked(moved[moved >= 0], groups)
+        frames = marked(moved[moved >= 0], groups)
         return Naming(frames, np.ones(groups, dtype=np.bool_), frames)
     frames = np.zeros(groups, dtype=np.bool_)
     parent, holder = problem.parent.tolist(), problem.holder.tolist()
@@ -451,9 +451,9 @@ def naming(problem: Problem) -> Naming:
         while group > held_by:  # parents have lower numbers than their children
             frames[group] = True
             group = parent[group]
-    inside, whole = _marked(problem.inside[1], groups), _marked(problem.whole[1], groups)
+    inside, whole = marked(problem.inside[1], groups), marked(problem.whole[1], groups)
     own = problem.whole[1] == problem.holder[problem.whole[0]]
-    inside |= _marked(problem.whole[1][own], groups)  # its own box is what it draws
+    inside |= marked(problem.whole[1][own], groups)  # its own box is what it draws
     inside[0] = True
     return Naming(frames, inside, whole)
 
@@ -476,16 +476,9 @@ def riding_depths(problem: Problem, depths: Ints) -> Ints:
     return np.maximum(placed, in_rigid)
 
 
-def _marked(numbers: Ints, count: int) -> Bools:
-    found = np.zeros(count, dtype=np.bool_)
-    found[numbers] = True
-    return found
-
-
 def _in_any_row(problem: Problem) -> Bools:
-    """Returns the unknowns (n,) that occur in any row."""
     found = expression.mentioned(problem.tape, problem.rows.expression.tolist())
-    return _marked(np.array(found, dtype=np.intp), len(problem.initial))
+    return marked(np.array(found, dtype=np.intp), len(problem.initial))
 
 
 # --- Solving again after a small change: values that the change cannot have reached are taken from the last

@@ -26,7 +26,7 @@ from aidl_lang.solver.array_program import ArrayFreezing, ArrayProgram, Schedule
 from aidl_lang.solver.branches import TIGHTER, Metric
 from aidl_lang.solver.expression import Bools, Floats, Ints
 from aidl_lang.solver.hierarchy import riding_depths
-from aidl_lang.solver.linear import each_once, stacked_least_norm
+from aidl_lang.solver.linear import each_once, marked, places, stacked_least_norm
 from aidl_lang.solver.loosening import DEPTHS, MOST, STILL, Tier, stage_name, tiers_at
 from aidl_lang.solver.newton import GAIN, POLISHED, Clock, End, System
 from aidl_lang.solver.problem import Problem, Settings, StageReport, depths, violations
@@ -96,11 +96,11 @@ class Levels:
         if not violated.any():
             return
         of_constraint, of_unknown = self._parts(active)
-        left = np.zeros(int(max(of_constraint.max(), of_unknown.max(initial=0))) + 1, dtype=np.bool_)
-        left[of_constraint[violated]] = True
+        parts = int(max(of_constraint.max(), of_unknown.max(initial=0))) + 1
+        left = marked(of_constraint[violated], parts)
         tier = self._tiers(depth, held)
-        mentioned = np.zeros(len(problem.initial), dtype=np.bool_)
-        mentioned[self.unknowns[active[self.constraints] & left[of_constraint[self.constraints]]]] = True
+        pairs = active[self.constraints] & left[of_constraint[self.constraints]]
+        mentioned = marked(self.unknowns[pairs], len(problem.initial))
         group_of = np.zeros(len(left), dtype=np.intp)
         group_of[of_constraint[held]] = problem.holder[held]
         tried = np.zeros(len(left), dtype=np.intp)
@@ -118,12 +118,12 @@ class Levels:
             part = of_constraint[problem.rows.constraint[rows]]
             solved, hopeless = self._attempt(rows, part, free, hopeful, of_unknown)
             left &= ~hopeful | hopeless
-            parts = np.flatnonzero(hopeful & (solved | hopeless))
+            decided = np.flatnonzero(hopeful & (solved | hopeless))
             considered = np.bincount(part, minlength=len(left))
             tier_of = divmod(code, DEPTHS)
-            columns = (column[parts].tolist() for column in (group_of, count, considered, solved))
-            for group, *decided in zip(*columns, strict=True):
-                yield tier_of, StageReport(group, stage_name(tier_of), *decided)
+            columns = (column[decided].tolist() for column in (group_of, count, considered, solved))
+            for group, *result in zip(*columns, strict=True):
+                yield tier_of, StageReport(group, stage_name(tier_of), *result)
             if not left.any() or self.clock.expired:
                 return
 
@@ -137,10 +137,7 @@ class Levels:
         return violations(self.problem, nodes) <= self.settings.tolerance * self.problem.rows.scale
 
     def _all(self, holding: Bools) -> Bools:
-        """Returns the mask of constraints (c,) all of whose rows hold."""
-        found = np.ones(len(self.problem.holder), dtype=np.bool_)
-        found[self.problem.rows.constraint[~holding]] = False
-        return found
+        return ~marked(self.problem.rows.constraint[~holding], len(self.problem.holder))
 
     # -- parts and scopes
 
@@ -165,11 +162,8 @@ class Levels:
 
     def _promising(self, violated: Bools, of_constraint: Ints, free: Bools, parts: int) -> Bools:
         """Returns the mask of parts (p,) that have something free in every violated constraint."""
-        reachable = np.zeros(len(violated), dtype=np.bool_)
-        reachable[self.constraints[free[self.unknowns]]] = True
-        found = np.ones(parts, dtype=np.bool_)
-        found[of_constraint[violated & ~reachable]] = False
-        return found
+        reachable = marked(self.constraints[free[self.unknowns]], len(violated))
+        return ~marked(of_constraint[violated & ~reachable], parts)
 
     def _scope(self, active: Bools, seeds: Bools, allowed: Bools) -> tuple[Bools, Bools]:
         """Returns the closure of the seeds: the constraints, and the free unknowns that they mention, with
@@ -201,8 +195,7 @@ class Levels:
         considered = ~problem.rows.at_most[rows]  # and those that turn out to be violated without them
         varying = freezing.varies(problem.rows.expression[rows])
         left, solved = hopeful.copy(), np.zeros(len(hopeful), dtype=np.bool_)
-        hopeless = solved.copy()
-        hopeless[part[~varying & ~holding]] = True
+        hopeless = marked(part[~varying & ~holding], len(hopeful))
         left &= ~hopeless
         for _ in range(ROUNDS):
             if not left.any() or self.clock.expired:
@@ -214,8 +207,7 @@ class Levels:
                 left &= ~failed
             reached = self.schedule.evaluate(x)
             holds = self._holding(reached)[rows]
-            unmet = np.zeros(len(left), dtype=np.bool_)
-            unmet[part[~holds]] = True
+            unmet = marked(part[~holds], len(left))
             accepted = left & ~unmet
             accepted &= ~self._leaves_a_choice(x, free, of_unknown, part[considered & varying], len(left))
             moved = free & accepted[of_unknown]
@@ -225,9 +217,7 @@ class Levels:
             solved |= accepted
             left &= unmet
             fresh = ~holds & ~considered
-            more = np.zeros(len(left), dtype=np.bool_)
-            more[part[fresh]] = True
-            left &= more
+            left &= marked(part[fresh], len(left))
             considered |= fresh
         return solved, hopeless
 
@@ -262,8 +252,7 @@ class Levels:
         elif bool((of_row.count == of_column.count).all()) and count > 1:
             # Systems that leave no choice may be solved as one.
             solved[:] = self._solve_alone(program, rows, x) is End.CONVERGED
-        choosy = np.zeros(count, dtype=np.bool_)  # which inequalities bind has to be searched for
-        choosy[of_row.part[listed.at_most[rows]]] = True
+        choosy = marked(of_row.part[listed.at_most[rows]], count)  # which of them bind is to be searched for
         for system in np.flatnonzero((~wanted | choosy) & ~solved & ~hopeless).tolist():
             members = np.sort(of_row.members(system))
             whole = len(members) == len(rows)
@@ -271,10 +260,8 @@ class Levels:
             end = self._solve_alone(alone, rows[members], x)
             solved[system] = end is End.CONVERGED
             hopeless[system] = end is End.INFEASIBLE and bool(alone.plain.all())
-        failed, contrary = np.zeros((2, parts), dtype=np.bool_)
-        failed[part[~solved[of_row.part]]] = True
-        contrary[part[hopeless[of_row.part]]] = True
-        return x, failed, contrary
+        failed, contrary = part[~solved[of_row.part]], part[hopeless[of_row.part]]
+        return x, marked(failed, parts), marked(contrary, parts)
 
     def _solve_stacked(
         self, program: ArrayProgram, rows: Ints, of_row: Sorted, of_column: Sorted, wanted: Bools
@@ -308,7 +295,6 @@ class Levels:
         return x, solved, hopeless
 
     def _solve_alone(self, program: ArrayProgram, rows: Ints, x: Floats) -> End:
-        """Solves one system with all care; moves `x` there if that succeeds."""
         columns, metric = program.columns, self.metric.of(program.columns)
         scales, at_most = (metric.scale, self.problem.rows.scale[rows]), self.problem.rows.at_most[rows]
         system = System(program, x[columns], *scales, at_most, None, metric.longest, metric.unit)
@@ -322,17 +308,14 @@ class Levels:
 def _stacks(
     program: ArrayProgram, of_row: Sorted, of_column: Sorted, wanted: Bools, at_most: Bools
 ) -> Iterator[_Stack]:
-    """Yields the wanted systems stacked by shape."""
     entry_system = of_row.part[program.entry_rows]
-    bent = np.zeros(len(wanted), dtype=np.bool_)
-    bent[of_row.part[~program.affine]] = True
+    bent = marked(of_row.part[~program.affine], len(wanted))
     shape = of_row.count * (int(of_column.count.max(initial=0)) + 1) + of_column.count
     shape[~wanted] = -1
     for code in sorted(set(shape[wanted].tolist())):
         members = np.flatnonzero(shape == code)
         m, k = int(of_row.count[members[0]]), int(of_column.count[members[0]])
-        place = np.full(len(wanted), -1)
-        place[members] = np.arange(len(members))
+        place = places(members, len(wanted))
         entries = np.flatnonzero(place[entry_system] >= 0)
         at = place[entry_system[entries]] * m + of_row.place[program.entry_rows[entries]]
         rows = of_row.of[of_row.first[members][:, None] + np.arange(m)]
@@ -368,10 +351,7 @@ class _Stack:
     def __post_init__(self) -> None:
         count = len(self.systems)
         self.z = np.zeros(self.columns.shape)
-        self.done = np.zeros(count, dtype=np.bool_)
-        self.failed = np.zeros(count, dtype=np.bool_)
-        self.out_of_reach = np.zeros(count, dtype=np.bool_)
-        self.polishing = np.zeros(count, dtype=np.bool_)
+        self.done, self.failed, self.out_of_reach, self.polishing = np.zeros((4, count), dtype=np.bool_)
         self.promised = np.full(count, np.inf)
         """The greatest sum of squared residuals allowed after the last step."""
         self.before: tuple[Floats, Floats] | None = None

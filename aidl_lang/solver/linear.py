@@ -401,9 +401,21 @@ def each_once(values: NDArray[np.intp]) -> NDArray[np.intp]:
 
 def others(count: int, left_out: Iterable[int]) -> NDArray[np.intp]:
     """Returns the numbers (k,) from 0 to `count` that are not left out, in order."""
-    kept = np.ones(count, dtype=np.bool_)
-    kept[np.fromiter(left_out, dtype=np.intp)] = False
-    return np.flatnonzero(kept)
+    return np.flatnonzero(~marked(np.fromiter(left_out, dtype=np.intp), count))
+
+
+def marked(numbers: Ints | list[int], count: int) -> Bools:
+    """Returns the mask (count,) of some numbers below `count`."""
+    found = np.zeros(count, dtype=np.bool_)
+    found[numbers] = True
+    return found
+
+
+def places(numbers: Ints, count: int) -> Ints:
+    """Returns for each number below `count` its place among some distinct ones; -1 for the others."""
+    found = np.full(count, -1)
+    found[numbers] = np.arange(len(numbers))
+    return found
 
 
 def scattered(count: int, seed: int = 0) -> NDArray[np.float64]:

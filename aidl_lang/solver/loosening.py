@@ -29,7 +29,6 @@ from aidl_lang.solver.problem import Problem, Relation
 from aidl_lang.solver.valuation import FLAT, gradients
 
 if TYPE_CHECKING:
-    from aidl_lang.solver.branches import Verdict
     from aidl_lang.solver.hierarchy import Hierarchy
 
 # --- The stages at which the unknowns of a group become free.
@@ -481,7 +480,7 @@ def thin(hierarchy: Hierarchy, scope: Scope, before: dict[int, float], rank: Ran
         return
     reached = hierarchy.save(scope.free)
     hierarchy.values.assign(before.items())
-    verdict: Verdict = hierarchy.attempt(replace(scope, free=frozenset(needed)), 0)
+    verdict = hierarchy.attempt(replace(scope, free=frozenset(needed)), 0)
     now = _moved(hierarchy, before)  # unknowns in curved rows: about as far as the slopes promised?
     off = sum((now.get(unknown, 0.0) - step) ** 2 for unknown, step in expected.items())
     if not verdict.satisfied or off > ASTRAY**2 * sum(step * step for step in expected.values()):
@@ -514,7 +513,6 @@ def spare_sizes(hierarchy: Hierarchy, scope: Scope, before: dict[int, float]) ->
 
 
 def _moved(hierarchy: Hierarchy, before: dict[int, float]) -> dict[int, float]:
-    """Returns the move of each unknown that moved, in units of its scale."""
     scale, unknowns = hierarchy.problem.scale, hierarchy.values.unknowns
     found = {u: float((unknowns[u] - x) / scale[u]) for u, x in before.items()}
     return {u: step for u, step in found.items() if abs(step) > STILL}

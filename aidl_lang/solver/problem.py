@@ -182,7 +182,6 @@ def _by_constraint(pairs: NDArray[np.intp], count: int) -> list[frozenset[int]]:
 
 
 def _pairs(listed: Iterable[Iterable[int]]) -> NDArray[np.intp]:
-    """Returns the pairs (2, k) of the index of each set of numbers and each number in it."""
     found = [(index, number) for index, numbers in enumerate(listed) for number in sorted(numbers)]
     return np.array(found, dtype=np.intp).reshape(-1, 2).T
 

@@ -220,7 +220,6 @@ def _is_never_negative(form: Form) -> bool:
 
 
 def _arrays(forms: Sequence[Form]) -> tuple[Floats, Floats]:
-    """Returns the slopes (m, n) and constants (m,) of m forms in n slots."""
     columns: dict[int, int] = {}
     for form in forms:
         for slot in form.terms if isinstance(form, Affine) else ():

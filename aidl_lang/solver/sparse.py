@@ -29,7 +29,7 @@ from scipy.sparse.csgraph import structural_rank
 from scipy.sparse.linalg import SuperLU, splu
 
 from aidl_lang.solver.expression import Bools, Floats, Ints
-from aidl_lang.solver.linear import CONSISTENT, DOUBT, NOISE, RANK, LeastNorm, Sparse
+from aidl_lang.solver.linear import CONSISTENT, DOUBT, NOISE, RANK, LeastNorm, Sparse, marked, places
 
 REGULAR = 1e-9
 """ε relative to the greatest square of a row."""
@@ -132,7 +132,6 @@ class SparseMatrix:
         return LeastNorm(z, multipliers, rest if outside else None, False)
 
     def _square(self, y: Floats) -> LeastNorm | None:
-        """Solves a square system by LU; returns None if the result is not to be trusted."""
         factors = self.lu
         if factors is None:
             return None
@@ -289,12 +288,9 @@ def _untouched(
         if not len(won):
             break
         taken.append(won)
-        in_row, in_column = np.zeros(len(starts), dtype=bool), np.zeros(width, dtype=bool)
-        in_row[won], in_column[candidate[won]] = True, True
-        touched = np.zeros(width, dtype=bool)
-        touched[columns[in_row[rows]]] = True  # columns that a chosen row has an entry in
-        reaches = np.zeros(len(starts), dtype=bool)
-        reaches[rows[in_column[columns]]] = True  # rows with an entry in a chosen column
+        in_row, in_column = marked(won, len(starts)), marked(candidate[won], width)
+        touched = marked(columns[in_row[rows]], width)  # columns that a chosen row has an entry in
+        reaches = marked(rows[in_column[columns]], len(starts))  # rows with an entry in a chosen column
         priority = np.where(reaches | touched[candidate], np.inf, priority)
     found = np.concatenate(taken)
     return found, candidate[found]
@@ -302,13 +298,11 @@ def _untouched(
 
 def _eliminate(rest: sp.csr_array, names: Ints, rows: Ints, pivots: Ints) -> tuple[sp.csr_array, Ints]:
     """Returns the Schur complement of the pivots: the other rows without their part along these columns."""
-    place = np.full(rest.shape[1], -1)
-    place[pivots] = np.arange(len(pivots))
+    place = places(pivots, rest.shape[1])
     upper = rest[rows]
     on_pivot = place[upper.indices] == np.repeat(np.arange(len(rows)), np.diff(upper.indptr))
     values: Floats = upper.data[on_pivot]
-    other = np.ones(len(names), dtype=bool)
-    other[rows] = False
+    other = ~marked(rows, len(names))
     lower = rest[other]
     here = place[lower.indices] >= 0
     shape = (lower.shape[0], len(pivots))

@@ -20,7 +20,7 @@ import numpy as np
 from aidl_lang.common.records import record
 from aidl_lang.solver.array_program import CANCELLED, ArrayFreezing, Schedule
 from aidl_lang.solver.expression import BRANCHING, PARTIALS, VALUE, Bools, Floats, Ints, Op, Tape, below
-from aidl_lang.solver.linear import Sparse, starts_of
+from aidl_lang.solver.linear import Sparse, marked, starts_of
 
 Compiled: TypeAlias = "tuple[Callable[..., float], int | tuple[int, ...], int, int]"
 """Function, first operand (all of them for more than two), second operand or -1, result."""
@@ -71,8 +71,7 @@ class Valuation:
         """Returns for each node whether it hangs on kept sizes alone, none of `sizes` among them."""
         found = self._still.get(sizes)
         if found is None:
-            held = np.zeros(len(self.unknowns), dtype=np.bool_)
-            held[list(self.kept - sizes)] = True
+            held = marked(list(self.kept - sizes), len(self.unknowns))
             found = self._still[sizes] = (~self.schedule.varying(~held)).tobytes()
         return found
 

@@ -23,12 +23,7 @@ class _Recorded:
 
 
 class Node(_Recorded):
-    span: Span = field(repr=False, kw_only=True)
-
-    def __repr__(self) -> str:
-        """Returns what dataclasses print, without the span; one for all, as many would slow the start."""
-        shown = (f"{f.name}={getattr(self, f.name)!r}" for f in dataclasses.fields(self) if f.repr)
-        return f"{type(self).__name__}({', '.join(shown)})"
+    span: Span = field(kw_only=True)
 
 
 class Identifier(Node):
@@ -220,7 +215,7 @@ class Attribute(Node):
 class Allowing(Node):
     """A statement before which no attributes stand but `@allow(…)`."""
 
-    allowing: tuple[Attribute, ...] = field(default=(), repr=False, kw_only=True)
+    allowing: tuple[Attribute, ...] = field(default=(), kw_only=True)
 
 
 class Block(Node):

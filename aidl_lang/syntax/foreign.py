@@ -390,7 +390,6 @@ def foreign_character(t: Trouble) -> SyntaxProblem | None:
 
 
 def _fence(t: Trouble) -> SyntaxProblem:
-    """Recognises a line of Markdown around a program: "```aidl"."""
     line = Span(t.source, t.token.start, line_end(t.source.text, t.token.start))
     message = "the fence of a Markdown block is no part of the program"
     return wrong("E0108", message, line, fix=replaced("remove it", line, ""), tokens=t.tokens)

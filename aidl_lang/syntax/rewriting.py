@@ -321,7 +321,6 @@ def lines_joined_by_sign(
 
 
 def _leaves(statements: Sequence[ast.Statement]) -> list[ast.Node]:
-    """Returns the statements that hold no others, at any depth."""
     leaves: list[ast.Node] = []
     stack: list[ast.Node] = list(statements)
     while stack:

@@ -42,9 +42,6 @@ class _Kept:
 
     always_accept = ("OPEN_COMMENT", "BROKEN")
 
-    def process(self, stream: Iterator[Any]) -> Iterator[Any]:
-        return stream
-
 
 @record(eq=False)
 class Tables:

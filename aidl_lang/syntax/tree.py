@@ -483,7 +483,6 @@ def out_of_place(attribute: Span, before: str) -> Diagnostic:
 
 
 def _split(parts: tuple[Any, ...]) -> tuple[tuple[ast.Attribute, ...], list[Any]]:
-    """Returns the leading attributes and what follows them."""
     return (
         tuple(p for p in parts if isinstance(p, ast.Attribute)),
         [p for p in parts if not isinstance(p, ast.Attribute)],

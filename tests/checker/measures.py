@@ -186,7 +186,8 @@ def _of_arc(geo: Geo, name: str) -> Any:
 def of_shape(geo: Geo, name: str) -> Any:
     corners = [p["at"] for n in _CORNERS if (p := geo.parts.get(n)) is not None and p.type == "point"]
     for kinds, fields in _SHAPES.items():
-        if geo.type in kinds.split() and name in fields and (len(corners) == 4 or "outer" not in kinds):
+        has_all = len(corners) == 4 or not kinds.startswith(("rectangle", "trapezoid"))
+        if geo.type in kinds.split() and name in fields and has_all:
             return fields[name](geo.parts, corners)
     if name in ("start", "end"):  # of a chain: a path, a polyline, a spline
         chain = [p for n, p in geo.parts.items() if n.startswith(("edges[", "segment["))]

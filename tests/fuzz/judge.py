@@ -8,13 +8,10 @@ from __future__ import annotations
 import json
 import random
 import re
-import signal
 import sys
 import traceback
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from dataclasses import dataclass, fields, replace
-from types import FrameType
 from typing import Any
 
 from aidl_lang import pipeline
@@ -28,6 +25,7 @@ from aidl_lang.pipeline import Settings
 from aidl_lang.syntax import ast
 from aidl_lang.syntax.printer import format_module
 from aidl_lang.tools.mending import mend
+from tests.interrupts import TooLong, within
 
 SETTINGS = replace(
     Settings(),
@@ -56,26 +54,6 @@ class Finding:
     stage: str
     kind: str
     details: str
-
-
-class TooLong(BaseException):
-    """The processor's time for a step ran out."""
-
-
-@contextmanager
-def within(seconds: float) -> Iterator[None]:
-    """Raises TooLong in the main thread when so much of the processor's time has gone by."""
-
-    def stop(number: int, frame: FrameType | None) -> None:
-        raise TooLong
-
-    before = signal.signal(signal.SIGPROF, stop)
-    signal.setitimer(signal.ITIMER_PROF, seconds)
-    try:
-        yield
-    finally:
-        signal.setitimer(signal.ITIMER_PROF, 0.0)
-        signal.signal(signal.SIGPROF, before)
 
 
 def finding(text: str, seed: int = 0) -> Finding | None:

@@ -39,27 +39,9 @@ _HANGS = 120
 """Seconds after which a reader that cannot be interrupted is told with its stack, and all ends."""
 _WORDS = (
     *(b"-1", b"0", b"1e308", b"1e-320", b"nan", b"inf", b"99999999999999999999", b"\xff\xfe", b"\0", b"\r\n"),
-    *(
-        b"<",
-        b"/>",
-        b"</svg>",
-        b'"',
-        b"&amp;",
-        b"<use href='#a'/>",
-        b"matrix(0 0 0 0 0 0)",
-        b"M0 0A1 0 9 1 1 0 0z",
-    ),
-    *(
-        b"  0\nLINE\n",
-        b" 70\n1\n",
-        b"  0\nINSERT\n",
-        b"SPLINE",
-        b"\xed\xa0\x80",
-        b"\xf0\x9d\x92\x9c",
-        b",",
-        b"\n",
-        b"'",
-    ),
+    *(b"<", b"/>", b"</svg>", b'"', b"&amp;", b"<use href='#a'/>", b"matrix(0 0 0 0 0 0)"),
+    *(b"M0 0A1 0 9 1 1 0 0z", b"  0\nLINE\n", b" 70\n1\n", b"  0\nINSERT\n", b"SPLINE"),
+    *(b"\xed\xa0\x80", b"\xf0\x9d\x92\x9c", b",", b"\n", b"'"),
     *(b"Content-Length: 5\r\n\r\n", b"{", b"}", b"[", b"null", b'"id":', b"\\ud800", b'"params":', b"true"),
 )
 """What readers may stumble over."""

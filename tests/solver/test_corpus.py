@@ -34,8 +34,8 @@ def _cases() -> list[object]:
     ]
 
 
-@pytest.mark.parametrize("many", [10**9, 0], ids=["one by one", "all at once"])
 @pytest.mark.parametrize("path", _cases())
+@pytest.mark.parametrize("many", [10**9, 0], ids=["one by one", "all at once"])
 def test_case(path: Path, many: int, monkeypatch: pytest.MonkeyPatch) -> None:
     """Group by group on numbers, and all groups of a depth at once on arrays."""
     monkeypatch.setattr(hierarchy, "MANY", many)

@@ -10,11 +10,8 @@ import math
 import os
 import pickle
 import random
-import signal
 import subprocess
 import sys
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import replace
 from hashlib import sha256
 
@@ -27,6 +24,7 @@ from scipy.optimize import minimize
 from aidl_lang.solver import Constraint, Problem, Settings, Solution, solve
 from aidl_lang.solver.analysis import analyse
 from tests.documents import ROOT
+from tests.interrupts import within
 
 from .check import assert_honest, assert_smallest_change, assert_solved, jacobian, values_of
 from .kinds import KINDS
@@ -134,27 +132,11 @@ def test_another_optimiser_finds_nothing_nearer(sketch: Sketch) -> None:
             assert change(built, found.x) >= change(built, solution.values) * (1.0 - 1e-6) - 1e-6
 
 
-@contextmanager
-def at_most(seconds: float) -> Iterator[None]:
-    """Ends what takes longer, so that a solve that hangs is a failure and no more than that."""
-
-    def late(*_: object) -> None:
-        raise AssertionError(f"not done after {seconds} s")
-
-    before = signal.signal(signal.SIGALRM, late)
-    signal.setitimer(signal.ITIMER_REAL, seconds)
-    try:
-        yield
-    finally:
-        signal.setitimer(signal.ITIMER_REAL, 0.0)
-        signal.signal(signal.SIGALRM, before)
-
-
 @given(tangles(HOSTILE, rows=5))
 @profile(120)
 def test_unkind_problems_are_answered_honestly_and_soon(tangle: Tangle) -> None:
     problem = tangle.problem()
-    with at_most(10.0):
+    with within(10.0):
         solution = solve(problem, Settings(seconds=1.0))
     assert_honest(problem, solution)
 

@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
-_FENCE = re.compile(r"^```(\S+) *(.*)$")
+from tests.documents import blocks
+
 _PENDING = re.compile(r"<!--\s*pending:\s*(.*?)\s*-->")
 _SLOW = "<!-- slow -->"
 _EXPECTED = re.compile(r"\s*// (?=(?:error|warning|note)\[[EWN]\d{4}\]: )")
-_HEADING = re.compile(r"^#+ +(.*)$")
 
 
 @dataclass(frozen=True)
@@ -52,10 +51,9 @@ class Expectation:
 
     def settings(self, word: str) -> dict[str, str]:
         """`set width=200` (or `limit entities=10`) as a table."""
-        found = [
-            line.text.removeprefix(word).strip() for line in self.lines if line.text.startswith(f"{word} ")
-        ]
-        return dict(_assignment(text) for text in found)
+        found = (line.text.removeprefix(word) for line in self.lines if line.text.startswith(f"{word} "))
+        pairs = (text.partition("=") for text in found)
+        return {name.strip(): value.strip() for name, _, value in pairs}
 
     @property
     def is_variant(self) -> bool:
@@ -94,59 +92,38 @@ class Case:
 def read(path: Path) -> list[Case]:
     """The cases of a spec in order. A block `fixed` is a case of its own as well: the mended program."""
     cases: list[Case] = []
-    heading, pending, slow = "", None, False
+    pending, slow, behind = None, False, 0
     files: dict[str, str] = {}
     lines = path.read_text(encoding="utf-8").splitlines()
-    for number, line, body in _blocks(lines):
-        if body is None:
-            if title := _HEADING.match(line):
-                heading = title[1]
-            if mark := _PENDING.search(line):
-                pending = mark[1]
-            slow |= line == _SLOW
-            continue
-        fence = _FENCE.match(line)
-        assert fence, f"{path.name}:{number}: a block needs a language"
-        match fence[1], fence[2].strip():
+    for block in blocks(path):
+        between, body, at = lines[behind : block.line - 1], block.text.splitlines(), block.line + 1
+        behind = block.line + len(body) + 1
+        pending = next((mark[1] for mark in map(_PENDING.search, reversed(between)) if mark), pending)
+        slow |= _SLOW in between
+        match block.language, block.note:
             case "aidl", "":
-                cases.append(Case(path, heading, _program(number + 1, body), dict(files), pending, slow))
+                case = Case(path, block.heading, _program(at, body), dict(files), pending, slow)
+                cases.append(case)
                 files, pending, slow = {}, None, False
-            case "aidl", note if note.startswith("file="):
-                files[note.removeprefix("file=")] = "".join(f"{text}\n" for text in body)
+            case "aidl", _ if block.file is not None:
+                files[block.file] = block.text
             case "expect", "":
-                cases[-1].expectations.append(
-                    Expectation(tuple(Line(number + 1 + i, text.strip()) for i, text in enumerate(body)))
-                )
+                texts = enumerate(body, at)
+                cases[-1].expectations.append(Expectation(tuple(Line(n, text.strip()) for n, text in texts)))
             case "fixed", "":
-                broken = cases[-1]
-                mended = _program(number + 1, body)
-                reason = pending or broken.pending
-                fixed = Case(path, heading, mended, broken.files, reason, broken.slow, fixes=broken.program)
-                cases.append(fixed)
+                broken, mended, reason = cases[-1], _program(at, body), pending or cases[-1].pending
+                fixes = broken.program
+                cases.append(
+                    Case(path, block.heading, mended, broken.files, reason, broken.slow, fixes=fixes)
+                )
                 pending = None
             case "formatted", "":
-                cases[-1].formatted = number + 1, "".join(f"{text}\n" for text in body)
+                cases[-1].formatted = at, block.text
             case "message", "":
-                cases[-1].message = number + 1, "".join(f"{text}\n" for text in body)
+                cases[-1].message = at, block.text
             case _, _:
-                raise ValueError(f"{path.name}:{number}: unknown block `{line}`")
+                raise ValueError(f"{path.name}:{block.line}: unknown block `{block.language} {block.note}`")
     return cases
-
-
-def _blocks(lines: list[str]) -> Iterator[tuple[int, str, list[str] | None]]:
-    """Lines outside of blocks with None, openings of blocks with their bodies."""
-    opening = 0
-    body: list[str] = []
-    for number, line in enumerate(lines, 1):
-        if not opening and line.startswith("```"):
-            opening, body = number, []
-        elif opening and line.strip() == "```":
-            yield opening, lines[opening - 1], body
-            opening = 0
-        elif opening:
-            body.append(line)
-        else:
-            yield number, line, None
 
 
 def _program(at: int, body: list[str]) -> Program:
@@ -164,8 +141,3 @@ def _program(at: int, body: list[str]) -> Program:
             expected.setdefault(owner, []).extend(message.strip() for message in messages)
         kept.append(code.rstrip() if messages else line)
     return Program(at, tuple(kept), expected)
-
-
-def _assignment(text: str) -> tuple[str, str]:
-    name, _, value = text.partition("=")
-    return name.strip(), value.strip()

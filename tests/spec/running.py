@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import ast
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
-from functools import lru_cache
+from functools import cache, lru_cache, partial
 
 import aidl_lang
 from aidl_lang import pipeline
@@ -65,8 +64,9 @@ def run(case: Case) -> Outcome:
         compiled = _variant(case, expectation, source) if expectation.is_variant else plain
         if expectation.is_variant:
             _check_variant(expectation, compiled.diagnostics, outcome)
+        reader = cache(partial(Reader, compiled))
         for claim in expectation.claims:
-            _check_claim(claim, compiled, outcome)
+            _check_claim(claim, compiled, reader, outcome)
     return outcome
 
 
@@ -187,7 +187,9 @@ def _accept_list(lines: Sequence[Line], texts: Sequence[str], outcome: Outcome) 
 # --- Claims ----------------------------------------------------------------------------------------
 
 
-def _check_claim(claim: Line, compiled: pipeline.Compiled, outcome: Outcome) -> None:
+def _check_claim(
+    claim: Line, compiled: pipeline.Compiled, reader: Callable[[], Reader], outcome: Outcome
+) -> None:
     word, colon, rest = claim.text.partition(":")
     if colon and word in ("status", "dof", "free", "motions", "changed"):
         found = _summary(word, compiled)
@@ -197,22 +199,14 @@ def _check_claim(claim: Line, compiled: pipeline.Compiled, outcome: Outcome) -> 
         return
     left, equals, right = claim.text.partition(" == ")
     try:
-        if equals and right == "?":
-            value = shown(Reader(compiled).value(_parsed(left)))
-            holds = False
-        else:
-            holds, value = Reader(compiled).holds(claim.text)
-    except (Missing, SyntaxError) as reason:
+        holds, value = (False, reader().shown(left)) if right == "?" else reader().holds(claim.text)
+    except Missing as reason:
         outcome.differs(claim.number, f"`{claim.text}`: {reason}")
         return
     if not holds:
         outcome.differs(claim.number, f"`{claim.text}`, but it is {value}")
         if equals:
             outcome.accepted[claim.number, claim.number + 1] = [f"{left} == {value}"]
-
-
-def _parsed(text: str) -> ast.expr:
-    return ast.parse(text, mode="eval").body
 
 
 def _summary(word: str, compiled: pipeline.Compiled) -> str:

@@ -48,7 +48,7 @@ def test_unexpected_diagnostic_is_told_with_its_line(tmp_path: Path) -> None:
         ("d.c.radius <= 15.9", "`d.c.radius <= 15.9`, but it is 16"),
         ("d.c.radius == 16.00002", "`d.c.radius == 16.00002`, but it is 16"),
         ("d.c.center == (0, 1)", "`d.c.center == (0, 1)`, but it is (0, 0)"),
-        ("d.e.radius == 16", "`d.e.radius == 16`: there is no `e` in `d`"),
+        ("d.e.radius == 16", "`d.e.radius == 16`: nothing tells e of Node d"),
         ("dof: 3", "`dof: 3`, but it is `2`"),
         ("changed: nothing", "`changed: nothing`, but it is `d.c.radius 15 -> 16`"),
         ("status: failed", "`status: failed`, but it is `solved`"),

@@ -22,7 +22,7 @@ from aidl_lang.parser import TextLimits
 from aidl_lang.pipeline import Compiled, Settings
 from aidl_lang.solver.problem import Settings as SolverSettings
 from aidl_lang.syntax import ast
-from aidl_lang.syntax.expression_printer import string_text
+from aidl_lang.syntax.printer import string_text
 from aidl_lang.tools.discretion import Programs, Reader
 
 PROGRAM = "program.aidl"

@@ -9,8 +9,7 @@ from functools import partial
 
 from aidl_lang.checking import builtins, types
 from aidl_lang.checking.builtins import EDITS
-from aidl_lang.checking.facts import Fact, body_of, of_symbol
-from aidl_lang.checking.members import member_of
+from aidl_lang.checking.facts import Fact, body_of, member_of, of_symbol
 from aidl_lang.checking.symbols import Symbol, SymbolKind, SymbolScope
 from aidl_lang.checking.units import ANGLE
 from aidl_lang.parser import standing_before

@@ -20,7 +20,7 @@ from aidl_lang.common.records import record
 from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.geometry.solved import SolvedModel
 from aidl_lang.syntax import ast
-from aidl_lang.syntax.expression_printer import ExpressionPrinter, format_expression
+from aidl_lang.syntax.printer import ExpressionPrinter, format_expression
 
 # --- Canonical keys of statements: equal for statements of the same meaning, however they are spelled.
 #

@@ -16,7 +16,7 @@ from aidl_lang.common.world import World
 from aidl_lang.geometry.solved import ConstraintReport
 from aidl_lang.pipeline import Compiled, Settings, compile
 from aidl_lang.syntax import ast
-from aidl_lang.syntax.expression_printer import format_expression
+from aidl_lang.syntax.printer import format_expression
 from aidl_lang.tools.discretion import Reader
 from aidl_lang.tools.llm.intent.changes import Changes, Fate
 from aidl_lang.tools.llm.intent.inventory import CONSTRAIN, Inventory, Item, Key, Kind, Path, Step
