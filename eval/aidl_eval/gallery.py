@@ -15,6 +15,7 @@ from typing import Any
 from urllib.parse import quote
 
 from aidl_eval.clip import Scores
+from aidl_eval.plan import key_of
 from aidl_eval.requirements import Status
 from aidl_eval.store import picture_path
 from aidl_eval.summary import MEANINGS, Row, names
@@ -97,7 +98,7 @@ def _prompt(name: str, records: Sequence[Record], folder: Path, scores: Scores) 
 
 
 def _cell(record: Record, folder: Path, scores: Scores) -> str:
-    key = f"{record['prompt']}/{record['variant']}/{record['run']}"
+    key = key_of(record)
     tags = " ".join(_tags(record))
     head = f"<h3>{_text(record['variant'])} <small>run {_text(record['run'])}</small></h3>"
     if "failure" in record:

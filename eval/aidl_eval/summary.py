@@ -4,7 +4,6 @@ languages differ by.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import combinations
@@ -13,23 +12,13 @@ from typing import Any
 
 from aidl_eval.clip import Scores
 from aidl_eval.editability import EditOutcome
-from aidl_eval.plan import VARIANTS
+from aidl_eval.plan import VARIANTS, key_of
 from aidl_eval.preference import Study
 from aidl_eval.rendering import RenderedLanguage
 from aidl_eval.requirements import Status
-from aidl_eval.statistics import (
-    Case,
-    Comparison,
-    Interval,
-    by_prompt,
-    compared,
-    holm,
-    interval,
-)
+from aidl_eval.statistics import Case, Comparison, Interval, by_prompt, compared, holm, interval, wilson
 
 Record = Mapping[str, Any]
-_Z = 1.959963984540054
-"""Quantile of the normal distribution: 95 % lie within."""
 
 
 @dataclass(frozen=True)
@@ -56,19 +45,9 @@ class Share:
     @property
     def interval(self) -> Interval | None:
         """Returns Wilson's interval where each conversation counts once, else that by drawing prompts."""
-        return interval(self.cases) if self.several else self.wilson
-
-    @property
-    def wilson(self) -> Interval | None:
-        """Returns Wilson's score interval at 95 % (Journal of the American Statistical Association 22, 1927,
-        209).
-        """
-        if not self.count:
-            return None
-        n, p, z2 = self.count, self.part / self.count, _Z * _Z
-        middle = (p + z2 / (2 * n)) / (1 + z2 / n)
-        half = _Z / (1 + z2 / n) * math.sqrt(p * (1 - p) / n + z2 / (4 * n * n))
-        return max(0.0, middle - half), min(1.0, middle + half)
+        if self.several:
+            return interval(self.cases)
+        return wilson(self.part, self.count) if self.count else None
 
 
 @dataclass(frozen=True)
@@ -272,8 +251,8 @@ def _figures(held: Sequence[Record], scores: Scores, limit: int) -> dict[str, Fi
         "tokens out": _mean(held, lambda r: r["usage"]["output"]),
         "seconds": _mean(held, _seconds),
         "cost": Total(sum(c is not None for c in costs), None if None in costs else sum(costs)),
-        "CLIP": _mean(valid, lambda r: scores.of.get(_key(r)), scores.reason or ""),
-        "CLIP neutral": _mean(valid, lambda r: scores.neutral.get(_key(r)), scores.reason or ""),
+        "CLIP": _mean(valid, lambda r: scores.of.get(key_of(r)), scores.reason or ""),
+        "CLIP neutral": _mean(valid, lambda r: scores.neutral.get(key_of(r)), scores.reason or ""),
     }
 
 
@@ -313,10 +292,6 @@ def _seconds(record: Record) -> float | None:
 
 def _within(number: int) -> Callable[[Record], bool]:
     return lambda r: _was_valid(r["attempts"][:number]) or (r["ok"] and len(r["attempts"]) <= number)
-
-
-def _key(record: Record) -> str:
-    return f"{record['prompt']}/{record['variant']}/{record['run']}"
 
 
 def _was_valid(attempts: Sequence[Record]) -> bool:
