@@ -4,20 +4,12 @@ from __future__ import annotations
 
 import csv
 import io
-import itertools
 import json
-import math
-import re
-from collections.abc import Iterator
 from dataclasses import replace
-
-import pytest
 
 from aidl_eval import ablation_table
 from aidl_eval.ablation import WAYS, Solved, compare
-from aidl_lang import pipeline
 from aidl_lang.common.source import SourceFile
-from aidl_lang.geometry.solved import Frame, SolvedStructure
 from eval.tests.conftest import Evaluation
 
 LIFTED = """
@@ -70,83 +62,6 @@ def test_ways_move_parts_as_wholes_where_all_at_once_moves_what_is_in_them() -> 
     assert found["full"].disturbed == found["paper"].disturbed == 0
     assert found["flat"].disturbed > 0
     assert {(s.parts, s.bent, s.sizes, s.missed) for s in found.values()} == {(3, 0, 0, 0)}
-
-
-# --- From the drawings: what is not the same in its frame, and what is another shape ------------------
-
-Shape = dict[str, list[tuple[float, ...]]]
-
-
-def structures(program: str, way: str) -> Iterator[tuple[SolvedStructure, list[Frame]]]:
-    """Yields the structures of a drawing, each with the frames from its own to the root's."""
-
-    def below(s: SolvedStructure, frames: list[Frame]) -> Iterator[tuple[SolvedStructure, list[Frame]]]:
-        yield s, frames
-        for child in s.structures:
-            yield from below(child, [child.frame, *frames])
-
-    settings = pipeline.Settings()
-    settings = replace(settings, solving=replace(settings.solving, stages=WAYS[way].stages))
-    model = pipeline.compile(SourceFile("kit.aidl", program), settings=settings).model
-    assert model is not None
-    return below(model.root, [])
-
-
-def drawn(s: SolvedStructure) -> list[tuple[float, ...]]:
-    """The numbers of the curves: places, and radii as tuples of one."""
-    found = []
-    for geometry in s.geometry:
-        for part in geometry.walk():
-            if part.curve is not None:
-                found += [v if isinstance(v, tuple) else (v,) for v in part.values.values()]
-    return [tuple(map(float, each)) for each in found]
-
-
-def in_frame(at: tuple[float, ...], frames: list[Frame]) -> tuple[float, ...]:
-    if len(at) == 2:
-        for frame in reversed(frames):
-            x, y, turn = at[0] - frame.x, at[1] - frame.y, math.radians(-frame.rotation)
-            at = (
-                x * math.cos(turn) - y * math.sin(turn),
-                x * math.sin(turn) + y * math.cos(turn),
-            )
-    return at
-
-
-def places(program: str, way: str) -> Shape:
-    return {s.path: [in_frame(at, frames) for at in drawn(s)] for s, frames in structures(program, way)}
-
-
-def distances(program: str, way: str) -> Shape:
-    """Lengths alone, which no move and no turn changes."""
-    found: Shape = {}
-    for s, _ in structures(program, way):
-        points = [at for at in drawn(s) if len(at) == 2]
-        apart = [(math.dist(a, b),) for a, b in itertools.combinations(points, 2)]
-        found[s.path] = [*apart, *(at for at in drawn(s) if len(at) == 1)]
-    return found
-
-
-def changed(before: Shape, after: Shape) -> set[str]:
-    found = set()
-    for path, numbers in before.items():
-        pairs = zip(itertools.chain(*numbers), itertools.chain(*after[path]), strict=True)
-        if any(abs(a - b) > 1e-4 for a, b in pairs):
-            found.add(path)
-    return found
-
-
-@pytest.mark.parametrize("way", ["full", "paper", "level", "flat"])
-@pytest.mark.parametrize("program", [KIT, LIFTED])
-def test_what_is_disturbed_and_bent_is_so_in_the_drawing(program: str, way: str) -> None:
-    written = re.sub(r"constrain (\{[^}]*\}|[^\n]*)", "", program)
-    disturbed = changed(places(written, "full"), places(program, way))
-    bent = changed(distances(written, "full"), distances(program, way))
-    solved = solves(program)[way]
-    assert (solved.disturbed, solved.bent) == (len(disturbed), len(bent))
-    if program is KIT:
-        assert bent == {"kit.widened"}
-        assert disturbed == {"kit.widened"} or way == "flat"
 
 
 def test_a_part_moved_and_turned_as_a_whole_is_as_it_was() -> None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Callable
 from pathlib import Path
 
 import ezdxf
@@ -11,9 +10,7 @@ import pytest
 from svgelements import SVG
 from svgelements import Path as SvgPath
 
-from tests.commands import Result
-
-Aidl = Callable[..., Result]
+from tests.commands import Aidl
 
 TAG = """\
 @thickness(6mm)

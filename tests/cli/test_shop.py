@@ -7,7 +7,6 @@ import io
 import math
 import re
 from codecs import BOM_UTF8
-from collections.abc import Callable
 from pathlib import Path
 
 import ezdxf
@@ -17,10 +16,8 @@ from shapely import LineString, Polygon, unary_union
 
 from aidl_lang import AidlError
 from tests import compiled
-from tests.commands import Result
+from tests.commands import Aidl, Result
 from tests.export.readers import read_mesh
-
-Aidl = Callable[..., Result]
 
 BOX = """\
 @thickness(3mm)
@@ -121,19 +118,8 @@ def test_the_cut_list(aidl: Aidl, box: Path) -> None:
 
 
 def test_the_cut_list_of_sheets(aidl: Aidl, box: Path) -> None:
-    aidl(
-        "compile",
-        "box.aidl",
-        "-o",
-        "cut.csv",
-        "-o",
-        "x.svg",
-        "--sheet",
-        "210x150",
-        "--kerf",
-        "0.2",
-        "--quiet",
-    )
+    sheet = ("--sheet", "210x150", "--kerf", "0.2", "--quiet")
+    aidl("compile", "box.aidl", "-o", "cut.csv", "-o", "x.svg", *sheet)
     parts, sheets = rows(box / "cut.csv")[1:4], rows(box / "cut.csv")[6:]
     assert rows(box / "cut.csv")[4] == []
     assert ",".join(rows(box / "cut.csv")[5]) == SHEETS

@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
-from tests.commands import Result
+from tests.commands import Aidl
 from tests.documents import ROOT
 
-Aidl = Callable[..., Result]
 TELEPHONE = str(ROOT / "examples" / "telephone.aidl")
 
 
