@@ -88,7 +88,7 @@ def _add_study(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    from aidl_eval.report import report
+    from aidl_eval.gallery import report
     from aidl_eval.store import Store
 
     if arguments.solver:
@@ -104,7 +104,7 @@ def _compare_ways(names: list[str], out: str | None) -> int:
     """Solves programs in all ways, prints the tables and writes them; 1 if a program is wrong. Raises
     RecordingError and StoreError.
     """
-    from aidl_eval import ablation, ablation_table
+    from aidl_eval import ablation
     from aidl_eval.recordings import SUFFIX
     from aidl_eval.store import Store
 
@@ -119,11 +119,11 @@ def _compare_ways(names: list[str], out: str | None) -> int:
     for number, (source, world, thing) in enumerate(programs, 1):
         solves += ablation.compare(source, world, thing)
         say(f"{number}/{len(programs)} {source.name}")
-    text = ablation_table.markdown(solves)
+    text = ablation.markdown(solves)
     if out is not None:
         store = Store(Path(out))
         store.write("solver.md", text.encode())
-        store.write("solver.csv", ablation_table.to_csv(solves).encode("utf-8-sig"))
+        store.write("solver.csv", ablation.to_csv(solves).encode("utf-8-sig"))
     print(text, end="")
     return 1 if any(solved.status == ablation.WRONG for solved in solves) else 0
 
@@ -144,7 +144,7 @@ def _run(arguments: argparse.Namespace, store: Store) -> int:
 
 def _asked(arguments: argparse.Namespace) -> tuple[Provider | None, Plan]:
     """Returns the model, none for `--report`, and what it is to be asked."""
-    from aidl_eval.timing import Timed
+    from aidl_eval.run import Timed
 
     asked = None if arguments.report else Timed(provider(arguments))
     return asked, _plan(arguments, asked is not None and asked.takes_seeds)

@@ -1,4 +1,5 @@
-"""All runs on one page: pictures, programs, losses, requirements. It needs only the pictures beside it.
+"""What is reported on a folder of records: tables for readers and programs, and the gallery, all runs on one
+page: pictures, programs, losses, requirements. It needs only the pictures beside it.
 
 Programs and replies are strangers' text: everything is escaped, and the page allows no script but its own.
 """
@@ -14,11 +15,13 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import quote
 
-from aidl_eval.clip import Scores
+from aidl_eval import recordings, table
+from aidl_eval.clip import MODEL, Scores, score_all
 from aidl_eval.plan import key_of
+from aidl_eval.preference import study_of
 from aidl_eval.requirements import Status
-from aidl_eval.store import picture_path
-from aidl_eval.summary import MEANINGS, Row, names
+from aidl_eval.store import Store, picture_path
+from aidl_eval.summary import MEANINGS, WITHIN, Row, names, pairs, rows
 from aidl_eval.table import shown
 from aidl_lang.common.prose import counted
 
@@ -29,6 +32,32 @@ _NAMES = {"degrees": "degrees of freedom", "detached": "detached pieces"}
 _CONTROL = re.compile(r"[\x00-\x08\x0b-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069\ud800-\udfff]")
 _LONGEST = 20_000
 """Most characters of a program or a reply that are shown."""
+
+
+def report(store: Store, weights: str | None = None, model: str = MODEL) -> str:
+    """Writes `evaluation.md`, `.csv`, `.json`, `index.html` and `recording.jsonl`, and returns the Markdown.
+    Raises StoreError.
+    """
+    records = store.records()
+    scores = score_all(store, records, weights, model)
+    settings = store.settings()
+    attempts = settings.get("attempts")
+    limit = attempts if isinstance(attempts, int) else WITHIN[-1]
+    study = study_of(store, records)
+    variants, prompts = (rows(records, scores, each, limit, study) for each in (False, True))
+    differences = pairs(variants, study=study)
+    text = table.markdown(variants, prompts, differences, recordings.notes(records, settings), study)
+    outputs = {
+        "recording.jsonl": recordings.written(records, settings),
+        "evaluation.md": text,
+        "evaluation.csv": table.to_csv([*variants, *prompts], differences, study),
+        "evaluation.json": table.to_json(variants, prompts, differences, study),
+        "index.html": page(store.folder, records, variants, scores),
+    }
+    for name, content in outputs.items():
+        encoding = "utf-8-sig" if name.endswith(".csv") else "utf-8"
+        store.write(name, content.encode(encoding, "backslashreplace"))
+    return text
 
 
 def page(folder: Path, records: Sequence[Record], rows: Sequence[Row], scores: Scores) -> str:

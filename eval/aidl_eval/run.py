@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import queue
 import threading
-from collections.abc import Callable, Iterator
+import time
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import CancelledError
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
+from datetime import UTC, datetime
 
 from aidl_eval import measures, store
 from aidl_eval.plan import Job, Plan
@@ -15,7 +17,7 @@ from aidl_eval.store import Record, Store
 from aidl_eval.worker import Broken, Remote, Worker
 from aidl_lang import Diagnostic
 from aidl_lang.tools.llm.generation import Task, generate
-from aidl_lang.tools.llm.messages import Provider
+from aidl_lang.tools.llm.messages import Message, Provider, Reply, Sampling
 
 PATIENCE = 5
 """Consecutive failures to reach the model after which no more requests are made."""
@@ -30,6 +32,31 @@ class Done:
     png: bytes | None = None
     neutral: bytes | None = None
     failure: Diagnostic | None = None
+
+
+@dataclass(frozen=True)
+class Timed:
+    """A provider whose replies carry their seconds and their day (UTC). Repeats and pauses count."""
+
+    provider: Provider
+
+    @property
+    def name(self) -> str:
+        return self.provider.name
+
+    @property
+    def takes_seeds(self) -> bool:
+        return self.provider.takes_seeds
+
+    @property
+    def takes_grammars(self) -> bool:
+        return self.provider.takes_grammars
+
+    def reply(self, messages: Sequence[Message], sampling: Sampling, hear: Callable[[str], None]) -> Reply:
+        begun = time.monotonic()
+        reply = self.provider.reply(messages, sampling, hear)
+        today = datetime.now(UTC).date().isoformat()
+        return replace(reply, seconds=round(time.monotonic() - begun, 3), date=today)
 
 
 def run(
@@ -115,10 +142,8 @@ def _worked(
     measured = {**record, "measured": store.measured_with(prompt), "unmeasured": {}}
     png = neutral = None
     try:
-        drawn = worker.call(measures.draw, job.variant, record["program"], prompt)
-        png, neutral = drawn.png, drawn.neutral
-        measured["numbers"] = dict(drawn.numbers)
-        measured["requirements"] = [asdict(result) for result in drawn.requirements]
+        png, neutral, found = worker.call(measures.draw, job.variant, record["program"], prompt)
+        measured |= found
     except Broken as reason:
         measured["unmeasured"]["drawing"] = str(reason)
     try:

@@ -183,14 +183,8 @@ def _attempt(attempt: Attempt) -> Record:
 
 
 def _verdict(verdict: Verdict) -> Record:
-    return {
-        "ok": verdict.ok,
-        "stage": verdict.stage,
-        "codes": list(verdict.codes),
-        "fixes": list(verdict.fixes),
-        "missing": list(verdict.missing),
-        "numbers": dict(verdict.numbers),
-    }
+    kept = ("ok", "stage", "codes", "fixes", "missing")
+    return {**{name: getattr(verdict, name) for name in kept}, "numbers": dict(verdict.numbers)}
 
 
 def _settings(plan: Plan, provider: str) -> Record:

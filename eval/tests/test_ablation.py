@@ -7,7 +7,7 @@ import io
 import json
 from dataclasses import replace
 
-from aidl_eval import ablation_table
+from aidl_eval import ablation
 from aidl_eval.ablation import WAYS, Solved, compare
 from aidl_lang.common.source import SourceFile
 from eval.tests.conftest import Evaluation
@@ -118,7 +118,7 @@ def table(drifts: dict[str, float], **figures: object) -> list[Solved]:
 
 
 def lines(solves: list[Solved], way: str) -> list[list[str]]:
-    text = ablation_table.markdown(solves)
+    text = ablation.markdown(solves)
     cells = [line.strip("| ").split(" | ") for line in text.splitlines() if line.startswith("|")]
     return [line for line in cells if way in line]
 
@@ -141,20 +141,20 @@ def test_what_one_way_does_not_solve_is_in_no_mean() -> None:
     assert rows["paper"][1] == "50 % [0–100] (1/2)"
     assert rows["flat"][1] == "100 % [100–100] (2/2)"
     assert rows["flat"][5] == "2.00 (1)"
-    assert "All but `solved` are over the 1 programs of 2" in ablation_table.markdown(found)
+    assert "All but `solved` are over the 1 programs of 2" in ablation.markdown(found)
 
 
 def test_a_wrong_program_is_told_apart() -> None:
     (wrong,) = compare(SourceFile("a.aidl", "solid a { b = }"))
     assert wrong.status == "wrong"
-    text = ablation_table.markdown([wrong, *compare(SourceFile("b.aidl", LIFTED))])
+    text = ablation.markdown([wrong, *compare(SourceFile("b.aidl", LIFTED))])
     assert "| a.aidl | full | wrong |" in text
     assert "over the 1 programs of 1 that every way solves; they draw 1 things." in text
     assert "The problem of `no-box-rule` is another one in 0 of 1 programs." in text
 
 
 def test_the_csv_has_ways_programs_and_differences() -> None:
-    found = list(csv.DictReader(io.StringIO(ablation_table.to_csv(table({"a": 2.0, "b": 4.0})))))
+    found = list(csv.DictReader(io.StringIO(ablation.to_csv(table({"a": 2.0, "b": 4.0})))))
     drift = [line for line in found if line["figure"] == "drift"]
     drifts = {(line["prompt"], line["variant"], line["against"]): line for line in drift}
     assert float(drifts["", "flat", ""]["value"]) == 3.0
