@@ -232,7 +232,6 @@ def _is_bent(was: _Drawn, now: _Drawn) -> bool:
 
 
 def _missed(problem: Problem, values: Floats) -> int:
-    """Returns how many constraints of a problem do not hold."""
     rows, off = problem.rows, violations(problem, Schedule(problem.tape).evaluate(values))
     is_off = ~(off <= _SETTINGS.solving.tolerance * rows.scale) & np.isnan(problem.weight[rows.constraint])
     return len(np.unique(rows.constraint[is_off]))
@@ -288,7 +287,6 @@ def to_csv(solves: Sequence[Solved]) -> str:
 
 
 def _fair(solves: Sequence[Solved]) -> list[Solved]:
-    """Returns the solves of the programs that every way solves."""
     failing = {s.program for s in solves if s.status != "solved"}
     return [s for s in solves if s.program not in failing]
 

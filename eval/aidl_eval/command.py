@@ -129,7 +129,6 @@ def _compare_ways(names: list[str], out: str | None) -> int:
 
 
 def _run(arguments: argparse.Namespace, store: Store) -> int:
-    """Does the open jobs, and returns how many are still left."""
     from aidl_eval.run import run
 
     asked, plan = _replayed(arguments) if arguments.replay else _asked(arguments)
@@ -144,10 +143,20 @@ def _run(arguments: argparse.Namespace, store: Store) -> int:
 
 def _asked(arguments: argparse.Namespace) -> tuple[Provider | None, Plan]:
     """Returns the model, none for `--report`, and what it is to be asked."""
+    from dataclasses import replace
+
+    from aidl_eval.plan import Plan, Switches
     from aidl_eval.run import Timed
+    from aidl_lang.tools.llm.generation import Settings
 
     asked = None if arguments.report else Timed(provider(arguments))
-    return asked, _plan(arguments, asked is not None and asked.takes_seeds)
+    chosen = sampling(arguments)
+    if chosen.seed is None and asked is not None and asked.takes_seeds:
+        chosen = replace(chosen, seed=1)
+    settings = Settings(arguments.attempts, chosen)
+    switches = Switches(arguments.guide == "full", arguments.fixes, arguments.recovery, arguments.plans)
+    plan = Plan(_prompts(arguments), _variants(arguments), arguments.runs or _RUNS, settings, switches)
+    return asked, plan
 
 
 def _replayed(arguments: argparse.Namespace) -> tuple[Replay, Plan]:
@@ -168,20 +177,6 @@ def _replayed(arguments: argparse.Namespace) -> tuple[Replay, Plan]:
     return recordings.Replay("recording", {one.job: one for one in chosen}), plan
 
 
-def _plan(arguments: argparse.Namespace, takes_seeds: bool) -> Plan:
-    from dataclasses import replace
-
-    from aidl_eval.plan import Plan, Switches
-    from aidl_lang.tools.llm.generation import Settings
-
-    asked = sampling(arguments)
-    if asked.seed is None and takes_seeds:
-        asked = replace(asked, seed=1)
-    settings = Settings(arguments.attempts, asked)
-    switches = Switches(arguments.guide == "full", arguments.fixes, arguments.recovery, arguments.plans)
-    return Plan(_prompts(arguments), _variants(arguments), arguments.runs or _RUNS, settings, switches)
-
-
 def _prompts(arguments: argparse.Namespace) -> tuple[Prompt, ...]:
     from difflib import get_close_matches
 
@@ -195,7 +190,6 @@ def _prompts(arguments: argparse.Namespace) -> tuple[Prompt, ...]:
 
 
 def _known(arguments: argparse.Namespace) -> dict[str, Prompt]:
-    """Returns the prompts of the folder by their names. Raises UseError."""
     from aidl_eval.requirements import PromptError, load
 
     folder = arguments.prompt_folder

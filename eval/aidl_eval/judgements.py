@@ -136,20 +136,15 @@ class Answers:
 
     def __init__(self, folder: Path) -> None:
         self.path = folder / STUDY
-        self._seen: tuple[int, int] | None = None
-        self._answers: list[Answer] = []
 
     def all(self) -> Sequence[Answer]:
         """Returns all answers in the order in which they were given. Raises StoreError."""
         try:
-            state = self.path.stat()
-            if (seen := (state.st_mtime_ns, state.st_size)) != self._seen:
-                self._answers, self._seen = list(_read(self.path)), seen
+            return list(_read(self.path))
         except FileNotFoundError:
-            self._answers, self._seen = [], None
+            return []
         except OSError as error:
             raise StoreError("E0988", f"`{self.path}` cannot be read: {error.strerror or error}") from None
-        return self._answers
 
     def add(self, answers: Sequence[Answer]) -> None:
         """Appends answers in one write, and waits until they are on disk. Raises StoreError."""

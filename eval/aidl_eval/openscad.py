@@ -201,7 +201,6 @@ def _limit(folder: str) -> None:
 
 
 def _bare(program: str) -> str:
-    """Returns a program without comments and texts."""
     return _PLAIN.sub(" ", program)
 
 

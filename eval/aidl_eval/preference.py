@@ -107,18 +107,8 @@ def last_answers(given: Iterable[Answer]) -> dict[tuple[str, str], Answer]:
 # --- all answers as a table -----------------------------------------------------------------------
 
 COLUMNS = (
-    "rater",
-    "number",
-    "of",
-    "date",
-    "prompt",
-    "run",
-    "pictures",
-    "language",
-    "position",
-    "rank",
-    "answer",
-    "counts",
+    *("rater", "number", "of", "date", "prompt", "run", "pictures"),
+    *("language", "position", "rank", "answer", "counts"),
 )
 
 

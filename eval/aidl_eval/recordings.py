@@ -87,7 +87,6 @@ def _files(place: Path) -> list[Path]:
 
 
 def _lines(file: Path) -> Iterator[tuple[str, str]]:
-    """Yields the lines that are not empty, each with its place."""
     try:
         if not file.is_file():
             raise RecordingError("E0993", f"`{file}` is no file and no folder", _FORM)

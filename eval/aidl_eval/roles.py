@@ -287,5 +287,4 @@ def _ends(words: Words, tail: Words) -> bool:
 
 
 def _alike(path: str) -> tuple[Words, ...]:
-    """Returns a path without indices and places."""
     return tuple(tuple(w for w in _words(name) if w not in _PLACES) for name in path.split("."))

@@ -128,7 +128,6 @@ def _damaged(path: Path) -> StoreError:
 
 
 def _is_record(found: Record, job: Job) -> bool:
-    """Tells whether a record belongs to its job and is complete."""
     names = {"attempts", "ok", "program", "missing", "fixes", "usage", "request"}
     is_about = all(found.get(name) == value for name, value in asdict(job).items())
     return is_about and job.variant in VARIANTS and ("failure" in found or names <= found.keys())

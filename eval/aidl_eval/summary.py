@@ -241,10 +241,8 @@ def _figures(held: Sequence[Record], scores: Scores, limit: int) -> dict[str, Fi
         "degrees": _number(valid, "degrees"),
         "requirements": Share.of((_met(r, is_geometric=False) for r in valid), several=True),
         "geometry": Share.of((_met(r, is_geometric=True) for r in valid), several=True),
-        "edits hold": Share.of((_held(r) for r in edited), several=True),
-        "editability": Share.of(
-            (_counted(r, r["edits"]["edits"], "outcome", EditOutcome.KEPT) for r in edited), several=True
-        ),
+        "edits hold": Share.of((_edits(r, "holds", True) for r in edited), several=True),
+        "editability": Share.of((_edits(r, "outcome", EditOutcome.KEPT) for r in edited), several=True),
         "knobs": _mean(edited, lambda r: r["edits"]["knobs"]),
         "detached": _number(valid, "detached"),
         "tokens in": _mean(held, lambda r: r["usage"]["input"]),
@@ -260,20 +258,18 @@ def _share(records: Sequence[Record], holds: Callable[[Record], bool]) -> Share:
     return Share.of(((r["prompt"], int(holds(r)), 1) for r in records), several=False)
 
 
-def _counted(of: Record, results: Sequence[Record], name: str, wanted: str) -> tuple[str, int, int]:
-    return of["prompt"], sum(result[name] == wanted for result in results), len(results)
+def _counted(of: Record, results: Sequence[Record], name: str, wanted: object) -> tuple[str, int, int]:
+    """Returns the prompt of a record, how many results are as wanted, and how many there are."""
+    return of["prompt"], sum(result.get(name) == wanted for result in results), len(results)
 
 
 def _met(of: Record, *, is_geometric: bool) -> tuple[str, int, int]:
-    """Returns the prompt of a record, how many requirements of that kind are met, and how many there are."""
     asked = [x for x in of.get("requirements", ()) if bool(x.get("is_geometric")) == is_geometric]
     return _counted(of, asked, "status", Status.MET)
 
 
-def _held(of: Record) -> tuple[str, int, int]:
-    """Returns the prompt of a record, how many of its edits hold, and how many were made."""
-    edits = of["edits"]["edits"]
-    return of["prompt"], sum(bool(edit.get("holds")) for edit in edits), len(edits)
+def _edits(of: Record, name: str, wanted: object) -> tuple[str, int, int]:
+    return _counted(of, of["edits"]["edits"], name, wanted)
 
 
 def _mean(records: Sequence[Record], value: Callable[[Record], float | None], reason: str = "") -> Mean:

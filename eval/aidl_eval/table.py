@@ -66,7 +66,6 @@ def shown(figure: Figure) -> str:
 
 
 def _between(interval: Interval | None, times: float, digits: int) -> str:
-    """Returns an interval to stand behind a figure."""
     if interval is None:
         return ""
     low, high = (f"{times * end:,.{digits}f}" for end in interval)
@@ -115,7 +114,6 @@ def _study(rows: Sequence[Row], pairs: Sequence[Pair], study: Study | None) -> l
 
 
 def _preferred(rows: Sequence[Row], pairs: Sequence[Pair]) -> list[str]:
-    """Returns the table of how often each language was placed above each other."""
     cells = {}
     for pair in pairs:
         if pair.figure == "preferred":
@@ -143,7 +141,6 @@ def _conversations(row: Row) -> str:
 
 
 def _reasons(rows: Sequence[Row]) -> list[str]:
-    """Returns the reasons for missing measures, each once."""
     found = {
         f"{name} was not measured: {figure.reason}.": None
         for row in rows

@@ -363,7 +363,6 @@ def _words(name: str, value: object, *, is_flag: bool) -> list[str]:
 
 
 def _text(name: str, value: object) -> str:
-    """Returns a value as the command line has it."""
     if isinstance(value, str | Path):
         return str(value)
     if isinstance(value, int | float):
