@@ -20,10 +20,12 @@ class Result:
     err: str
 
 
+Aidl = Callable[..., Result]
+"""The fixture `aidl`."""
+
+
 @pytest.fixture
-def aidl(
-    folder: Path, capsysbinary: pytest.CaptureFixture[bytes], monkeypatch: pytest.MonkeyPatch
-) -> Callable[..., Result]:
+def aidl(folder: Path, capsysbinary: pytest.CaptureFixture[bytes], monkeypatch: pytest.MonkeyPatch) -> Aidl:
     """`aidl("check", "good.aidl")` runs the command in `folder`; `stdin` is what it may read."""
 
     def run(*arguments: str, stdin: str = "") -> Result:

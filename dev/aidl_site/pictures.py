@@ -9,10 +9,7 @@ import re
 import sys
 from pathlib import Path
 
-from aidl_lang import pipeline
-from aidl_lang.common.render import render
-from aidl_lang.common.source import SourceFile
-from aidl_lang.export.job import Options
+from aidl_lang.tools.reference import picture_of
 
 FOLDERS = ("docs", "docs/start", "docs/howto")
 """Folders whose pages are looked through."""
@@ -32,16 +29,9 @@ def pictures(root: Path) -> dict[str, bytes]:
             for program, shown in _SHOWN.findall(page.read_text("utf-8")):
                 for target in _PICTURE.findall(shown):
                     path = os.path.normpath(f"{folder}/{target}")
-                    found[path] = _drawn(f"{path}, on {page.name}", program, _DIMENSIONED in path)
+                    about, dimension = f"{path}, on {page.name}", _DIMENSIONED in path
+                    found[path] = picture_of(about, program, dimension=dimension)
     return found
-
-
-def _drawn(name: str, program: str, has_dimensions: bool) -> bytes:
-    compiled = pipeline.compile(SourceFile(name, program))
-    if not compiled.ok:
-        why = "\n".join(render(diagnostic) for diagnostic in compiled.diagnostics)
-        raise ValueError(f"{name} does not compile\n{why}")
-    return compiled.export(".svg", Options(compiled.show, dimension=has_dimensions))
 
 
 def write(root: Path) -> None:

@@ -174,14 +174,12 @@ class Staging:
     # --- Pages that are made ----------------------------------------------------------------------
 
     def _program(self, path: PurePosixPath, text: str) -> str:
-        """Returns the page of a program that another links to."""
         is_linked = self.has_playground and can_open("aidl", "", text)
         link = opening(text, len(path.parts) - 1, path.name) if is_linked else ""
         head = _UNSEARCHED * (path.parts[0] == "stdlib")
         return f"{head}# {path.name}\n\n`{path}`\n\n{link}\n\n```aidl\n{text}```\n"
 
     def _listing(self, path: PurePosixPath) -> str:
-        """Returns the page of a folder of programs."""
         programs = sorted((self.root / path).glob("*.aidl"))
         for program in programs:
             self._want(path / program.name)

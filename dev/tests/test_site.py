@@ -9,7 +9,7 @@ import re
 import tomllib
 import zlib
 from base64 import urlsafe_b64decode
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -20,7 +20,8 @@ from aidl_site.__main__ import CONFIGURATION
 from aidl_site.blocks import address, can_open, split, written
 from aidl_site.readme import outside
 from aidl_site.staging import Staging
-from tests.commands import Result, aidl  # noqa: F401 (a fixture)
+from tests.commands import Aidl
+from tests.commands import aidl as aidl
 from tests.documents import ROOT, Block, blocks
 
 TUTORIAL = ROOT / "docs" / "tutorial.md"
@@ -174,10 +175,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 # --- The tutorial ----------------------------------------------------------------------------------
 
 
-def test_the_tutorial_goes_as_it_says(
-    aidl: Callable[..., Result],  # noqa: F811
-    folder: Path,
-) -> None:
+def test_the_tutorial_goes_as_it_says(aidl: Aidl, folder: Path) -> None:
     """Each command is given for the program before it, and says what the page says; `…` is anything."""
     ran = 0
     mistaken = False
@@ -209,11 +207,7 @@ SERVERS = ("preview", "mcp", "lsp", "generate")
 
 
 @pytest.mark.parametrize("page", [*_pages("howto"), *_pages("start")], ids=lambda page: page.stem)
-def test_commands_on_a_page_are_understood(
-    page: Path,
-    aidl: Callable[..., Result],  # noqa: F811
-    folder: Path,
-) -> None:
+def test_commands_on_a_page_are_understood(page: Path, aidl: Aidl, folder: Path) -> None:
     """With a part in place of the program that they name."""
     commands = [
         words for block in blocks(page) if block.language == "console" for words, _ in _commands(block)

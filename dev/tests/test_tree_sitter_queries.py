@@ -11,7 +11,8 @@ from pathlib import Path
 import pytest
 from tree_sitter import Node, Query, QueryCursor
 
-from aidl_dev.highlighting.tree_sitter import HELIX, NEOVIM, queries
+from aidl_dev.highlighting.scopes import HELIX, NEOVIM
+from aidl_dev.highlighting.tree_sitter import queries
 from aidl_lang.common.source import SourceFile
 from aidl_lang.parser import parse as read
 from aidl_lang.syntax import ast

@@ -19,6 +19,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
+from aidl_eval.plan import key_of
 from aidl_eval.store import Store, digest, neutral_path, picture_path
 
 MODEL = "ViT-B-32-quickgelu"
@@ -104,7 +105,7 @@ def score_all(
     kept = _kept(store.folder / "clip.json", name)
     found, neutral, now = dict[str, float](), dict[str, float](), dict[str, float]()
     for each in records:
-        key = f"{each['prompt']}/{each['variant']}/{each['run']}"
+        key = key_of(each)
         for path, scores in ((picture_path(key), found), (neutral_path(key), neutral)):
             picture = store.folder / path
             if each.get("ok") and picture.is_file():

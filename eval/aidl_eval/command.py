@@ -10,7 +10,7 @@ from aidl_eval.study import command as study
 from aidl_lang.common.prose import counted
 from aidl_lang.tools.cli import files
 from aidl_lang.tools.cli.files import UseError, say, show
-from aidl_lang.tools.cli.options import add_provider, count_to, provider, sampling
+from aidl_lang.tools.cli.options import add_provider, choice, count_to, flag, provider, sampling, value
 
 if TYPE_CHECKING:
     from aidl_eval.plan import Plan
@@ -30,15 +30,11 @@ _OF_MODELS = ("provider", "model", "base_url", "seed", "temperature", "max_token
 
 
 def register(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument(
-        "--out",
-        metavar="DIR",
-        help="folder of the results (default: evaluation; with --solver they are printed alone)",
-    )
+    about = "folder of the results (default: evaluation; with --solver they are printed alone)"
+    value(parser, "--out", "DIR", about)
     parser.add_argument("--prompts", nargs="+", metavar="NAME", help="those of that name (default: all)")
-    parser.add_argument(
-        "--prompt-folder", metavar="DIR", help="where prompts are read from (default: those that come along)"
-    )
+    about = "where prompts are read from (default: those that come along)"
+    value(parser, "--prompt-folder", "DIR", about)
     parser.add_argument(
         "--variants",
         nargs="+",
@@ -47,71 +43,28 @@ def register(parser: argparse.ArgumentParser) -> None:
         metavar="NAME",
         help=f"some of {', '.join(_VARIANTS)} (default: the first four)",
     )
-    parser.add_argument(
-        "--runs",
-        type=count_to(10_000),
-        metavar="N",
-        help="of each prompt in each variant (default: 3; of a recording all)",
-    )
-    parser.add_argument(
-        "--attempts",
-        type=count_to(10_000),
-        default=5,
-        metavar="N",
-        help="replies in a conversation (default: 5)",
-    )
-    parser.add_argument(
-        "--jobs", type=count_to(10_000), default=4, metavar="N", help="at a time (default: 4)"
-    )
-    parser.add_argument(
-        "--time-limit",
-        type=count_to(10_000),
-        default=60,
-        metavar="SECONDS",
-        help="for judging a program, for drawing and for editing it (default: 60)",
-    )
-    parser.add_argument(
-        "--guide", choices=("full", "none"), default="full", help="what a model is told of a language"
-    )
-    parser.add_argument(
-        "--no-fixes", action="store_false", dest="mends", help="the machine mends nothing (AIDL)"
-    )
-    parser.add_argument(
-        "--no-recovery",
-        action="store_false",
-        dest="recovers",
-        help="what a program lost of earlier ones is neither asked for nor put back (AIDL)",
-    )
-    parser.add_argument(
-        "--no-plans",
-        action="store_false",
-        dest="plans",
-        help="a program with empty structures is taken as it is, not as a plan (AIDL)",
-    )
-    parser.add_argument(
-        "--clip-weights", metavar="FILE", help="weights of CLIP (default: $AIDL_CLIP_WEIGHTS)"
-    )
-    parser.add_argument(
-        "--clip-model",
-        default="ViT-B-32-quickgelu",
-        metavar="NAME",
-        help="what they are weights of, as open_clip names it (default: ViT-B-32-quickgelu)",
-    )
+    many = count_to(10_000)
+    value(parser, "--runs", "N", "of each prompt in each variant (default: 3; of a recording all)", many)
+    value(parser, "--attempts", "N", "replies in a conversation (default: 5)", many, 5)
+    value(parser, "--jobs", "N", "at a time (default: 4)", many, 4)
+    about = "for judging a program, for drawing and for editing it (default: 60)"
+    value(parser, "--time-limit", "SECONDS", about, many, 60)
+    choice(parser, "--guide", ("full", "none"), "what a model is told of a language")
+    for name, about in (
+        ("fixes", "the machine mends nothing (AIDL)"),
+        ("recovery", "what a program lost of earlier ones is neither asked for nor put back (AIDL)"),
+        ("plans", "a program with empty structures is taken as it is, not as a plan (AIDL)"),
+    ):
+        parser.add_argument(f"--no-{name}", action="store_false", dest=name, help=about)
+    value(parser, "--clip-weights", "FILE", "weights of CLIP (default: $AIDL_CLIP_WEIGHTS)")
+    about = "what they are weights of, as open_clip names it (default: ViT-B-32-quickgelu)"
+    value(parser, "--clip-model", "NAME", about, str, "ViT-B-32-quickgelu")
     instead = parser.add_mutually_exclusive_group()
-    instead.add_argument(
-        "--report", action="store_true", help="ask nothing: report on the runs that are there"
-    )
-    instead.add_argument(
-        "--replay",
-        metavar="PLACE",
-        help="ask nothing: take the replies from a recording, a file of JSON Lines or a folder of such",
-    )
-    instead.add_argument(
-        "--solver",
-        nargs="+",
-        metavar="PLACE",
-        help="ask nothing: solve programs, or those of recordings, with parts of the solver left out as well",
-    )
+    flag(instead, "--report", "ask nothing: report on the runs that are there")
+    about = "ask nothing: take the replies from a recording, a file of JSON Lines or a folder of such"
+    value(instead, "--replay", "PLACE", about)
+    about = "ask nothing: solve programs, or those of recordings, with parts of the solver left out as well"
+    value(instead, "--solver", "PLACE", about, nargs="+")
     add_provider(parser)
     parser.set_defaults(run=run)
     _add_study(parser)
@@ -126,8 +79,8 @@ def _add_study(parser: argparse.ArgumentParser) -> None:
     known = vars(own.parse_args(["FOLDER"])).keys()
 
     def apart(arguments: argparse.Namespace) -> int:
-        for name, value in vars(arguments).items():
-            if name not in known and value != parser.get_default(name):
+        for name, given in vars(arguments).items():
+            if name not in known and given != parser.get_default(name):
                 parser.error("`study` takes none of the options of a run")
         return study.run(arguments)
 
@@ -135,7 +88,7 @@ def _add_study(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    from aidl_eval.report import report
+    from aidl_eval.gallery import report
     from aidl_eval.store import Store
 
     if arguments.solver:
@@ -151,7 +104,7 @@ def _compare_ways(names: list[str], out: str | None) -> int:
     """Solves programs in all ways, prints the tables and writes them; 1 if a program is wrong. Raises
     RecordingError and StoreError.
     """
-    from aidl_eval import ablation, ablation_table
+    from aidl_eval import ablation
     from aidl_eval.recordings import SUFFIX
     from aidl_eval.store import Store
 
@@ -166,35 +119,44 @@ def _compare_ways(names: list[str], out: str | None) -> int:
     for number, (source, world, thing) in enumerate(programs, 1):
         solves += ablation.compare(source, world, thing)
         say(f"{number}/{len(programs)} {source.name}")
-    text = ablation_table.markdown(solves)
+    text = ablation.markdown(solves)
     if out is not None:
         store = Store(Path(out))
         store.write("solver.md", text.encode())
-        store.write("solver.csv", ablation_table.to_csv(solves).encode("utf-8-sig"))
+        store.write("solver.csv", ablation.to_csv(solves).encode("utf-8-sig"))
     print(text, end="")
     return 1 if any(solved.status == ablation.WRONG for solved in solves) else 0
 
 
 def _run(arguments: argparse.Namespace, store: Store) -> int:
-    """Does the open jobs, and returns how many are still left."""
     from aidl_eval.run import run
 
     asked, plan = _replayed(arguments) if arguments.replay else _asked(arguments)
     if asked is not None:
         store.begin(plan, asked.name)
-    outcome = run(plan, asked, store, arguments.jobs, float(arguments.time_limit), _progress)
-    if outcome.failure is not None:
-        show([outcome.failure])
-        say(f"{outcome.left} conversations are left to be had: the same command goes on with them")
-    return outcome.left
+    left, failure = run(plan, asked, store, arguments.jobs, float(arguments.time_limit), _progress)
+    if failure is not None:
+        show([failure])
+        say(f"{left} conversations are left to be had: the same command goes on with them")
+    return left
 
 
 def _asked(arguments: argparse.Namespace) -> tuple[Provider | None, Plan]:
     """Returns the model, none for `--report`, and what it is to be asked."""
-    from aidl_eval.timing import Timed
+    from dataclasses import replace
+
+    from aidl_eval.plan import Plan, Switches
+    from aidl_eval.run import Timed
+    from aidl_lang.tools.llm.generation import Settings
 
     asked = None if arguments.report else Timed(provider(arguments))
-    return asked, _plan(arguments, asked is not None and asked.takes_seeds)
+    chosen = sampling(arguments)
+    if chosen.seed is None and asked is not None and asked.takes_seeds:
+        chosen = replace(chosen, seed=1)
+    settings = Settings(arguments.attempts, chosen)
+    switches = Switches(arguments.guide == "full", arguments.fixes, arguments.recovery, arguments.plans)
+    plan = Plan(_prompts(arguments), _variants(arguments), arguments.runs or _RUNS, settings, switches)
+    return asked, plan
 
 
 def _replayed(arguments: argparse.Namespace) -> tuple[Replay, Plan]:
@@ -215,20 +177,6 @@ def _replayed(arguments: argparse.Namespace) -> tuple[Replay, Plan]:
     return recordings.Replay("recording", {one.job: one for one in chosen}), plan
 
 
-def _plan(arguments: argparse.Namespace, takes_seeds: bool) -> Plan:
-    from dataclasses import replace
-
-    from aidl_eval.plan import Plan, Switches
-    from aidl_lang.tools.llm.generation import Settings
-
-    asked = sampling(arguments)
-    if asked.seed is None and takes_seeds:
-        asked = replace(asked, seed=1)
-    settings = Settings(arguments.attempts, asked)
-    switches = Switches(arguments.guide == "full", arguments.mends, arguments.recovers, arguments.plans)
-    return Plan(_prompts(arguments), _variants(arguments), arguments.runs or _RUNS, settings, switches)
-
-
 def _prompts(arguments: argparse.Namespace) -> tuple[Prompt, ...]:
     from difflib import get_close_matches
 
@@ -242,7 +190,6 @@ def _prompts(arguments: argparse.Namespace) -> tuple[Prompt, ...]:
 
 
 def _known(arguments: argparse.Namespace) -> dict[str, Prompt]:
-    """Returns the prompts of the folder by their names. Raises UseError."""
     from aidl_eval.requirements import PromptError, load
 
     folder = arguments.prompt_folder
@@ -284,10 +231,9 @@ def _variants(arguments: argparse.Namespace) -> tuple[str, ...]:
     return tuple(wanted)
 
 
-def _progress(done: Done) -> None:
-    say(
-        f"{done.number}/{done.count} {done.job.prompt}, {done.job.variant}, run {done.job.run}: {_came(done)}"
-    )
+def _progress(done: Done, number: int, count: int) -> None:
+    job = done.job
+    say(f"{number}/{count} {job.prompt}, {job.variant}, run {job.run}: {_came(done)}")
 
 
 def _came(done: Done) -> str:

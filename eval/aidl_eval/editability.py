@@ -106,7 +106,6 @@ def _drawn(compiled: Compiled) -> Regions:
 
 
 def _met(prompt: Prompt, drawn: Regions) -> frozenset[str]:
-    """Returns the requirements on geometry that a drawing meets."""
     return frozenset(r.text for r in examine_regions(prompt, drawn) if r.status is Status.MET)
 
 

@@ -7,12 +7,13 @@ import os
 import re
 import unicodedata
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from datetime import UTC, datetime
 from io import FileIO
 from itertools import groupby
 from pathlib import Path
-from typing import Any
+
+from cattrs import Converter
 
 from aidl_eval.plan import VARIANTS
 from aidl_eval.store import Record, StoreError, digest, neutral_path, picture_path
@@ -27,6 +28,7 @@ _RATER = re.compile(r"[^\W_](?:[\w .-]{0,38}[^\W_])?")
 _LONGEST = 1 << 16
 """More bytes than a line has."""
 _DATE = re.compile(r"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\dZ", re.ASCII)
+_CONVERTER = Converter(detailed_validation=False)
 
 
 @dataclass(frozen=True)
@@ -134,20 +136,15 @@ class Answers:
 
     def __init__(self, folder: Path) -> None:
         self.path = folder / STUDY
-        self._seen: tuple[int, int] | None = None
-        self._answers: list[Answer] = []
 
     def all(self) -> Sequence[Answer]:
         """Returns all answers in the order in which they were given. Raises StoreError."""
         try:
-            state = self.path.stat()
-            if (seen := (state.st_mtime_ns, state.st_size)) != self._seen:
-                self._answers, self._seen = list(_read(self.path)), seen
+            return list(_read(self.path))
         except FileNotFoundError:
-            self._answers, self._seen = [], None
+            return []
         except OSError as error:
             raise StoreError("E0988", f"`{self.path}` cannot be read: {error.strerror or error}") from None
-        return self._answers
 
     def add(self, answers: Sequence[Answer]) -> None:
         """Appends answers in one write, and waits until they are on disk. Raises StoreError."""
@@ -172,8 +169,7 @@ def _cut_torn_line(file: FileIO) -> None:
 
 
 def _line(answer: Answer) -> str:
-    said = {"aidl_study": _FORMAT, **{name: getattr(answer, name) for name in _FIELDS}}
-    return json.dumps(said, ensure_ascii=False) + "\n"
+    return json.dumps({"aidl_study": _FORMAT, **asdict(answer)}, ensure_ascii=False) + "\n"
 
 
 def _read(path: Path) -> Iterator[Answer]:
@@ -186,69 +182,29 @@ def _read(path: Path) -> Iterator[Answer]:
         yield found
 
 
-_FIELDS: Mapping[str, type] = {
-    "rater": str,
-    "prompt": str,
-    "run": int,
-    "sheet": str,
-    "pictures": str,
-    "shown": list,
-    "undrawn": list,
-    "ranking": list,
-    "number": int,
-    "count": int,
-    "date": str,
-}
-
-
 def _answer(line: bytes) -> Answer | None:
     """Returns the answer of a line, None if it is none."""
     try:
         said = json.loads(line)
-    except (ValueError, RecursionError):
+        found = _CONVERTER.structure(said, Answer)
+    except (AttributeError, KeyError, RecursionError, TypeError, ValueError):
         return None
-    if not isinstance(said, dict) or said.keys() != {"aidl_study", *_FIELDS}:
-        return None
-    is_skipped = said["ranking"] is None
-    if said["aidl_study"] != _FORMAT or any(
-        type(said[name]) is not kind
-        for name, kind in _FIELDS.items()
-        if not (name == "ranking" and is_skipped)
-    ):
-        return None
-    shown, undrawn = said["shown"], said["undrawn"]
-    groups = [shown] if is_skipped else said["ranking"]
-    if not all(isinstance(group, list) and (group or is_skipped) for group in groups):
-        return None
-    return _built(said, shown, undrawn, groups) if _is_sound(said, shown, undrawn, groups) else None
+    written = {"aidl_study": _FORMAT, **asdict(found)}
+    is_so_written = json.dumps(said, sort_keys=True) == json.dumps(written, sort_keys=True)
+    return found if is_so_written and _is_sound(found) else None
 
 
-def _is_sound(said: Mapping[str, Any], shown: list[Any], undrawn: list[Any], groups: list[list[Any]]) -> bool:
-    languages = [*shown, *undrawn]
-    ranked = [name for group in groups for name in group]
+def _is_sound(answer: Answer) -> bool:
+    languages = [*answer.shown, *answer.undrawn]
+    groups = (answer.shown,) if answer.ranking is None else answer.ranking
     return (
-        all(isinstance(name, str) and name in VARIANTS for name in [*languages, *ranked])
+        VARIANTS.keys() >= set(languages)
         and len(set(languages)) == len(languages) >= FEWEST
-        and sorted(ranked) == sorted(shown)
-        and rater_named(said["rater"]) == said["rater"]
-        and _DATE.fullmatch(said["date"]) is not None
-        and said["pictures"] in STYLES
-        and said["run"] >= 1
-        and 0 <= said["number"] <= said["count"]
-    )
-
-
-def _built(said: Mapping[str, Any], shown: list[str], undrawn: list[str], groups: list[list[str]]) -> Answer:
-    return Answer(
-        said["rater"],
-        said["prompt"],
-        said["run"],
-        said["sheet"],
-        said["pictures"],
-        tuple(shown),
-        tuple(undrawn),
-        None if said["ranking"] is None else tuple(map(tuple, groups)),
-        said["number"],
-        said["count"],
-        said["date"],
+        and sorted(name for group in groups for name in group) == sorted(answer.shown)
+        and (answer.ranking is None or all(answer.ranking))
+        and rater_named(answer.rater) == answer.rater
+        and _DATE.fullmatch(answer.date) is not None
+        and answer.pictures in STYLES
+        and answer.run >= 1
+        and 0 <= answer.number <= answer.count
     )

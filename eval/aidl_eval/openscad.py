@@ -11,12 +11,13 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache, partial
 from pathlib import Path
+from types import MappingProxyType
 
 import numpy as np
 
 from aidl_eval import rendering
-from aidl_eval.regions import Part, Regions, of_outlines
-from aidl_eval.rendering import NOTHING, UNBOUNDED, Rendered, RenderedConversation
+from aidl_eval.regions import Regions, of_outlines
+from aidl_eval.rendering import NOTHING, UNBOUNDED, Rendered, RenderedLanguage
 from aidl_eval.sandbox import fence
 from aidl_lang.common.colors import hexadecimal
 
@@ -39,7 +40,7 @@ _KNOB = re.compile(r"^\s*([A-Za-z_]\w*)\s*=\s*(-?\d+(?:\.\d+)?(?:[eE][+-]?\d+)?)
 
 
 @dataclass(frozen=True)
-class OpenScad:
+class OpenScad(RenderedLanguage):
     name: str = "openscad"
     suffix: str = ".scad"
     fences: tuple[str, ...] = ("openscad", "scad")
@@ -48,26 +49,31 @@ class OpenScad:
         path = shutil.which(COMMAND)
         return _unlockable(path) if path else "it is not installed"
 
-    def guide(self) -> str:
-        return rendering.guide(self.name)
-
     def reads(self, text: str) -> bool:
         return self.run(text, parted=False)[0].ok
 
-    def conversation(self, before: str | None = None) -> RenderedConversation:
-        return RenderedConversation(self)
-
     def structures(self, program: str) -> int:
-        return structures(program)
+        """Counts the modules that a program defines."""
+        return len(_MODULE.findall(_bare(program)))
 
-    def knobs(self, program: str) -> Mapping[str, float]:
-        return knobs(program)
+    def knobs(self, program: str) -> dict[str, float]:
+        """Returns the top-level variables that are plain numbers; the last definition of a name counts."""
+        depth, start, found, bare = 0, 0, dict[str, float](), _bare(program)
+        for index, character in enumerate(bare):
+            depth += (character in "({[") - (character in ")}]")
+            if depth == 0 and character in ";}":
+                match = _KNOB.match(bare[start:index])
+                if match and character == ";":
+                    found[match[1]] = float(match[2])
+                start = index + 1
+        return found
 
     def run(
         self, program: str, edits: Sequence[Mapping[str, float]] = ({},), parted: bool = True
     ) -> list[Rendered]:
-        drawn = _parted if parted else _united
-        return [drawn(program, edit) for edit in edits]
+        if parted:
+            return [_parted(program, edit) for edit in edits]
+        return [replace(render(program, edit), is_parted=False) for edit in edits]
 
 
 @cache
@@ -77,25 +83,7 @@ def _unlockable(path: str) -> str | None:
     return f"`{path}` does not run locked in ({errors[0]})" if errors else None
 
 
-def structures(program: str) -> int:
-    """Counts the modules that a program defines."""
-    return len(_MODULE.findall(_bare(program)))
-
-
-def knobs(program: str) -> dict[str, float]:
-    """Returns the top-level variables that are plain numbers; the last definition of a name counts."""
-    depth, start, found, bare = 0, 0, dict[str, float](), _bare(program)
-    for index, character in enumerate(bare):
-        depth += (character in "({[") - (character in ")}]")
-        if depth == 0 and character in ";}":
-            match = _KNOB.match(bare[start:index])
-            if match and character == ";":
-                found[match[1]] = float(match[2])
-            start = index + 1
-    return found
-
-
-def render(program: str, knobs: Mapping[str, float] | None = None) -> Rendered:
+def render(program: str, knobs: Mapping[str, float] = MappingProxyType({})) -> Rendered:
     """Runs a program, with other values for some of its variables, and returns all it draws as one part. It
     is kept from reading files.
 
@@ -106,8 +94,7 @@ def render(program: str, knobs: Mapping[str, float] | None = None) -> Rendered:
         return Rendered(
             errors=("error: files cannot be read: do without `include`, `use`, `import` and `surface`",)
         )
-    values = [part for name, value in (knobs or {}).items() for part in ("-D", f"{name}={value!r}")]
-    code, text, drawn = _called(program, "drawing.svg", values)
+    code, text, drawn = _called(program, "drawing.svg", knobs)
     if code is None:
         return Rendered(errors=(f"error: rendering took longer than {rendering.SECONDS} s",))
     errors, warnings = _messages(text)
@@ -116,12 +103,9 @@ def render(program: str, knobs: Mapping[str, float] | None = None) -> Rendered:
     return _outlined(drawn, errors, warnings)
 
 
-def _united(program: str, knobs: Mapping[str, float]) -> Rendered:
-    return replace(render(program, knobs), is_parted=False)
-
-
-def _called(program: str, output: str, values: Sequence[str] = ()) -> tuple[int | None, str, str]:
+def _called(program: str, output: str, knobs: Mapping[str, float]) -> tuple[int | None, str, str]:
     """Returns how OpenSCAD ended (None: late), what it said and what it wrote."""
+    values = [part for name, value in knobs.items() for part in ("-D", f"{name}={value!r}")]
     with tempfile.TemporaryDirectory() as folder:
         drawing, said = Path(folder, output), Path(folder, "said")
         Path(folder, "program.scad").write_text(program, "utf-8", errors="replace")
@@ -150,36 +134,23 @@ def _parted(program: str, knobs: Mapping[str, float]) -> Rendered:
     whole = render(program, knobs)
     if not whole.ok:
         return whole
-    values = [part for name, value in knobs.items() for part in ("-D", f"{name}={value!r}")]
-    code, _, tree = _called(program, "tree.csg", values)
+    code, _, tree = _called(program, "tree.csg", knobs)
     pieces = parts(tree) if code == 0 and len(tree) <= _TREE else []
-    if len(pieces) < 2:
-        color = pieces[0].color if pieces else None
-        return replace(whole, regions=Regions(tuple(replace(p, color=color) for p in whole.regions.parts)))
-    found = list[Part]()
-    for piece in pieces:
-        drawn = render(piece.text)
-        found += [replace(part, color=piece.color) for part in drawn.regions.parts]
+    drawn = [(render(text) if len(pieces) > 1 else whole, color) for text, color in pieces or [("", None)]]
+    found = (replace(part, color=color) for each, color in drawn for part in each.regions.parts)
     return replace(whole, regions=Regions(tuple(found)))
 
 
-@dataclass(frozen=True)
-class Piece:
-    """A subtree that stands beside others; `text` draws it alone."""
-
-    text: str
-    color: str | None
-
-
-def parts(tree: str) -> list[Piece]:
-    """Returns the subtrees of a tree (as OpenSCAD writes it) that stand side by side: what groups, moves and
-    colours hold, down to the first operation on shapes. Where they are too many, those of a level further up.
+def parts(tree: str) -> list[tuple[str, str | None]]:
+    """Returns the subtrees of a tree (as OpenSCAD writes it) that stand side by side, each as a text that
+    draws it alone, with its colour: what groups, moves and colours hold, down to the first operation on
+    shapes. Where they are too many, those of a level further up.
     """
     lines = [line.strip() for line in tree.splitlines() if line.strip()]
     level = [_Node(tuple(lines), "", "", None)] if lines else []
     while (finer := [inner for node in level for inner in _opened(node)]) != level and len(finer) <= _MOST:
         level = finer
-    return [Piece(n.before + "\n".join(n.lines) + n.after, n.color) for n in level]
+    return [(n.before + "\n".join(n.lines) + n.after, n.color) for n in level]
 
 
 @dataclass(frozen=True)
@@ -230,7 +201,6 @@ def _limit(folder: str) -> None:
 
 
 def _bare(program: str) -> str:
-    """Returns a program without comments and texts."""
     return _PLAIN.sub(" ", program)
 
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 from aidl_eval.openscad import OpenScad
 from aidl_eval.python_cad import PythonCad
@@ -64,6 +65,11 @@ class Job:
     @property
     def key(self) -> str:
         return f"{self.prompt}/{self.variant}/{self.run}"
+
+
+def key_of(record: Mapping[str, Any]) -> str:
+    """Returns the key of the job that a record is about."""
+    return Job(record["prompt"], record["variant"], record["run"]).key
 
 
 @dataclass(frozen=True)

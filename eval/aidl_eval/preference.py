@@ -7,9 +7,8 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
-from aidl_eval.agreement import alpha
 from aidl_eval.judgements import Answer, Answers, Sheet, sheets
-from aidl_eval.statistics import Case, by_prompt
+from aidl_eval.statistics import Case, alpha, by_prompt
 from aidl_eval.store import Record, Store
 from aidl_lang.common.world import csv_text
 
@@ -108,18 +107,8 @@ def last_answers(given: Iterable[Answer]) -> dict[tuple[str, str], Answer]:
 # --- all answers as a table -----------------------------------------------------------------------
 
 COLUMNS = (
-    "rater",
-    "number",
-    "of",
-    "date",
-    "prompt",
-    "run",
-    "pictures",
-    "language",
-    "position",
-    "rank",
-    "answer",
-    "counts",
+    *("rater", "number", "of", "date", "prompt", "run", "pictures"),
+    *("language", "position", "rank", "answer", "counts"),
 )
 
 

@@ -6,12 +6,12 @@ import ast
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from aidl_eval import rendering, sandboxed
-from aidl_eval.rendering import Rendered, RenderedConversation
+from aidl_eval import sandboxed
+from aidl_eval.rendering import Rendered, RenderedLanguage
 
 
 @dataclass(frozen=True)
-class PythonCad:
+class PythonCad(RenderedLanguage):
     """A language whose programs are Python that imports one library and shows what it draws."""
 
     name: str
@@ -21,15 +21,9 @@ class PythonCad:
     def missing(self) -> str | None:
         return sandboxed.missing(self.name, sandboxed.interpreter(self.name))
 
-    def guide(self) -> str:
-        return rendering.guide(self.name)
-
     def reads(self, text: str) -> bool:
         tree = _parsed(text)
         return tree is not None and any(isinstance(node, (ast.Import, ast.ImportFrom)) for node in tree.body)
-
-    def conversation(self, before: str | None = None) -> RenderedConversation:
-        return RenderedConversation(self)
 
     def structures(self, program: str) -> int:
         """Counts the functions that a program defines."""

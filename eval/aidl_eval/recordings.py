@@ -16,7 +16,7 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import Any, NoReturn
 
-from aidl_eval.plan import VARIANTS, Job, Plan
+from aidl_eval.plan import VARIANTS, Job, Plan, key_of
 from aidl_eval.requirements import Prompt
 from aidl_lang import SourceFile
 from aidl_lang.tools.cli.files import UseError
@@ -87,7 +87,6 @@ def _files(place: Path) -> list[Path]:
 
 
 def _lines(file: Path) -> Iterator[tuple[str, str]]:
-    """Yields the lines that are not empty, each with its place."""
     try:
         if not file.is_file():
             raise RecordingError("E0993", f"`{file}` is no file and no folder", _FORM)
@@ -332,7 +331,7 @@ def notes(records: Iterable[Mapping[str, Any]], settings: Mapping[str, Any]) -> 
     """Returns what must be known of conversations, each note once, after the languages that it is about."""
     about: dict[str, dict[str, None]] = {}
     for r in records:
-        if note := settings.get(f"{NOTE}{r['prompt']}/{r['variant']}/{r['run']}"):
+        if note := settings.get(f"{NOTE}{key_of(r)}"):
             about.setdefault(note, {})[r["variant"]] = None
     return tuple(f"{', '.join(variants)}: {note}" for note, variants in about.items())
 
@@ -343,7 +342,7 @@ def written(records: Iterable[Mapping[str, Any]], settings: Mapping[str, Any]) -
 
 
 def _line(kept: Mapping[str, Any], settings: Mapping[str, Any]) -> str:
-    key = f"{kept['prompt']}/{kept['variant']}/{kept['run']}"
+    key = key_of(kept)
     replies = [
         {
             "text": attempt["reply"],

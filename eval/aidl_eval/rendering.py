@@ -7,10 +7,10 @@ turned: errors worded for a model, or regions. All else (judging, measuring, edi
 from __future__ import annotations
 
 import re
+from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Protocol, runtime_checkable
 
 from aidl_eval.regions import Regions
 from aidl_lang.tools.llm.messages import Conversation, Language, Verdict
@@ -44,17 +44,33 @@ class Rendered:
         return not self.errors
 
 
-@runtime_checkable
-class RenderedLanguage(Language, Protocol):
+class RenderedLanguage(ABC):
+    name: str
+    suffix: str
+    fences: tuple[str, ...]
+
+    def guide(self) -> str:
+        return Path(__file__).with_name("guides").joinpath(f"{self.name}.md").read_text("utf-8")
+
+    def conversation(self, before: str | None = None) -> RenderedConversation:
+        return RenderedConversation(self)
+
+    @abstractmethod
+    def reads(self, text: str) -> bool: ...
+
+    @abstractmethod
     def missing(self) -> str | None:
         """Returns the reason why its programs cannot be run here; None if they can."""
 
+    @abstractmethod
     def structures(self, program: str) -> int:
         """Returns the number of parts that a program defines by name."""
 
+    @abstractmethod
     def knobs(self, program: str) -> Mapping[str, float]:
         """Returns the named numbers that somebody who edits a program would turn."""
 
+    @abstractmethod
     def run(
         self, program: str, edits: Sequence[Mapping[str, float]] = ({},), parted: bool = True
     ) -> list[Rendered]:
@@ -140,8 +156,3 @@ class RenderedConversation:
         if ok:
             return f"The program draws something. If what is said above is not meant so, change it; {whole}"
         return f"Mend this without leaving out any part of the drawing, and {whole}"
-
-
-def guide(name: str) -> str:
-    """Returns the guide of a language by its name."""
-    return Path(__file__).with_name("guides").joinpath(f"{name}.md").read_text("utf-8")

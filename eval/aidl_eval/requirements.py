@@ -209,7 +209,6 @@ def _by_start(asked: Model) -> dict[int, list[Assertion]]:
 
 
 def _measured_values(asked: Model, drawn: Regions) -> Iterator[tuple[Unknown, float]]:
-    """Yields the measures of the whole drawing that a prompt has."""
     for unknown in asked.unknowns:
         if unknown.holder is asked.root and unknown.field in MEASURES:
             yield unknown, MEASURES[unknown.field](drawn)
@@ -254,8 +253,6 @@ class _Judge:
 
 
 class _Examination:
-    """The examination of one program of AIDL for one prompt."""
-
     def __init__(self, prompt: Prompt, model: SolvedModel, drawing: Drawing, program: ast.Module) -> None:
         self.prompt, self.model, self.drawing = prompt, model, drawing
         self.drawn = of_drawing(model, drawing)
@@ -312,7 +309,6 @@ class _Examination:
         return self.judge.result(requirement, self._bindings(requirement))
 
     def _unusable(self, role: str) -> str | None:
-        """Returns the reason why the things of a role cannot be measured."""
         found, (low, high) = len(self.bound[role]), self.prompt.ranges.get(role, (1, 1))
         if not found and low:
             return f"no {role.replace('_', ' ')} was found"
@@ -324,7 +320,6 @@ class _Examination:
         return f"`{buried.path}` is inside other material and is not to be seen" if buried else None
 
     def _bindings(self, requirement: Requirement) -> str:
-        """Describes the things bound to the roles of a requirement."""
         told = []
         for name in requirement.roles:
             paths = [thing.path for thing in self.bound[name]]

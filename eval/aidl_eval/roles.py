@@ -18,6 +18,7 @@ from aidl_eval.things import Group, Origins, Part, Thing, drawn, names, outlines
 from aidl_eval.whole import NEAR
 from aidl_lang.geometry.drawing import Drawing
 from aidl_lang.geometry.intersect import near_pairs
+from aidl_lang.geometry.network import Joined
 from aidl_lang.geometry.solved import SolvedModel, SolvedStructure
 
 Words: TypeAlias = tuple[str, ...]
@@ -151,12 +152,10 @@ class _Program:
         boxes = [(thing, box) for thing in like if (box := thing.bounds()) is not None]
         if not boxes or boxes[0][0] is not things[0]:
             return things[0]
-        pairs = list(near_pairs([box for _, box in boxes], NEAR * self.drawing.size))
-        near, before = {0}, 0
-        while len(near) > before:
-            before = len(near)
-            near |= {k for pair in pairs if near & set(pair) for k in pair}
-        return _together(boxes[k][0] for k in sorted(near))
+        near = Joined()
+        for pair in near_pairs([box for _, box in boxes], NEAR * self.drawing.size):
+            near.join(*pair)
+        return _together(boxes[k][0] for k in near.groups(range(len(boxes)))[0])
 
     def seen(self, thing: Thing, structure: SolvedStructure) -> Thing:
         """Returns the geometry of a structure, marked if it is hidden."""
@@ -287,5 +286,4 @@ def _ends(words: Words, tail: Words) -> bool:
 
 
 def _alike(path: str) -> tuple[Words, ...]:
-    """Returns a path without indices and places."""
     return tuple(tuple(w for w in _words(name) if w not in _PLACES) for name in path.split("."))

@@ -4,18 +4,20 @@ from __future__ import annotations
 
 import queue
 import threading
-from collections.abc import Callable, Iterator
+import time
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import CancelledError
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, replace
+from datetime import UTC, datetime
 
 from aidl_eval import measures, store
 from aidl_eval.plan import Job, Plan
 from aidl_eval.recordings import Replay
 from aidl_eval.store import Record, Store
-from aidl_eval.worker import SECONDS, Broken, Remote, Worker
+from aidl_eval.worker import Broken, Remote, Worker
 from aidl_lang import Diagnostic
 from aidl_lang.tools.llm.generation import Task, generate
-from aidl_lang.tools.llm.messages import Provider
+from aidl_lang.tools.llm.messages import Message, Provider, Reply, Sampling
 
 PATIENCE = 5
 """Consecutive failures to reach the model after which no more requests are made."""
@@ -23,72 +25,93 @@ PATIENCE = 5
 
 @dataclass(frozen=True)
 class Done:
-    """A finished job, with its number of how many."""
+    """A finished job with its pictures; `failure` tells why the conversation broke off, if it did."""
 
-    job: Job
-    record: Record
-    number: int
-    count: int
-    failure: Diagnostic | None = None
-
-
-@dataclass(frozen=True)
-class RunSummary:
-    """Counts of a run. `left` jobs were not begun, or failed to reach the model."""
-
-    done: int
-    kept: int
-    left: int
-    failure: Diagnostic | None
-
-
-@dataclass(frozen=True)
-class _Result:
     job: Job
     record: Record
     png: bytes | None = None
     neutral: bytes | None = None
     failure: Diagnostic | None = None
-    bug: BaseException | None = None
 
 
-@dataclass
-class _Crew:
-    """The data that threads share."""
+@dataclass(frozen=True)
+class Timed:
+    """A provider whose replies carry their seconds and their day (UTC). Repeats and pauses count."""
 
-    plan: Plan
-    provider: Provider | Replay | None
-    waiting: queue.SimpleQueue[tuple[Job, Record | None]] = field(default_factory=queue.SimpleQueue)
-    results: queue.SimpleQueue[_Result] = field(default_factory=queue.SimpleQueue)
-    is_over: threading.Event = field(default_factory=threading.Event)
+    provider: Provider
+
+    @property
+    def name(self) -> str:
+        return self.provider.name
+
+    @property
+    def takes_seeds(self) -> bool:
+        return self.provider.takes_seeds
+
+    @property
+    def takes_grammars(self) -> bool:
+        return self.provider.takes_grammars
+
+    def reply(self, messages: Sequence[Message], sampling: Sampling, hear: Callable[[str], None]) -> Reply:
+        begun = time.monotonic()
+        reply = self.provider.reply(messages, sampling, hear)
+        today = datetime.now(UTC).date().isoformat()
+        return replace(reply, seconds=round(time.monotonic() - begun, 3), date=today)
 
 
 def run(
     plan: Plan,
     provider: Provider | Replay | None,
     kept: Store,
-    threads: int = 4,
-    seconds: float = SECONDS,
-    listen: Callable[[Done], None] = lambda done: None,
-) -> RunSummary:
-    """Does the open jobs of a plan. Without a provider only outdated measures are taken again.
+    threads: int,
+    seconds: float,
+    listen: Callable[[Done, int, int], None],
+) -> tuple[int, Diagnostic | None]:
+    """Does the open jobs of a plan; without a provider only outdated measures are taken again. `listen` is
+    told of each, with its number of how many. Returns how many were not begun, or failed to reach the model,
+    and why the last of these did.
 
     An interrupt leaves everything that was finished.
     """
     todo = list(_to_do(plan, kept, may_ask=provider is not None))
-    crew = _Crew(plan, provider)
+    waiting = queue.SimpleQueue[tuple[Job, Record | None]]()
+    results = queue.SimpleQueue[Done | BaseException]()
+    is_over = threading.Event()
     for item in todo:
-        crew.waiting.put(item)
+        waiting.put(item)
+
+    def serve(worker: Worker) -> None:
+        """Takes jobs until there are none left, or the worker is stopped."""
+        try:
+            while not is_over.is_set():
+                results.put(_worked(plan, provider, worker, *waiting.get_nowait()))
+        except (queue.Empty, CancelledError):
+            return
+        except BaseException as bug:  # noqa: BLE001 (raised again by the main thread)
+            results.put(bug)
+
     workers = [Worker(seconds) for _ in range(min(threads, len(todo)))]
+    left, in_a_row, last = len(todo), 0, None
     try:
         for worker in workers:
-            threading.Thread(target=_serve, args=(crew, worker), daemon=True).start()
-        done, failure = _gather(crew, kept, len(todo), listen)
+            threading.Thread(target=serve, args=(worker,), daemon=True).start()
+        for number in range(1, len(todo) + 1):
+            done = results.get()
+            if isinstance(done, BaseException):
+                raise done
+            kept.keep(done.job, done.record, done.png, done.neutral)
+            if done.failure is None:
+                left, in_a_row = left - 1, 0
+            else:
+                in_a_row, last = in_a_row + 1, done.failure
+            listen(done, number, len(todo))
+            if in_a_row == PATIENCE:
+                break
     finally:
-        crew.is_over.set()
+        is_over.set()
         for worker in workers:
             worker.stop()
-    return RunSummary(done, sum(1 for _ in plan.jobs()) - len(todo), len(todo) - done, failure)
+    return left, last
 
 
 def _to_do(plan: Plan, kept: Store, may_ask: bool) -> Iterator[tuple[Job, Record | None]]:
@@ -102,61 +125,25 @@ def _to_do(plan: Plan, kept: Store, may_ask: bool) -> Iterator[tuple[Job, Record
             yield job, record
 
 
-def _gather(
-    crew: _Crew, kept: Store, count: int, listen: Callable[[Done], None]
-) -> tuple[int, Diagnostic | None]:
-    done = number = in_a_row = 0
-    last: Diagnostic | None = None
-    while number < count and in_a_row < PATIENCE:
-        result = crew.results.get()
-        number += 1
-        if result.bug is not None:
-            raise result.bug
-        kept.keep(result.job, result.record, result.png, result.neutral)
-        if result.failure is None:
-            done, in_a_row = done + 1, 0
-        else:
-            in_a_row, last = in_a_row + 1, result.failure
-        listen(Done(result.job, result.record, number, count, result.failure))
-    return done, last
-
-
-def _serve(crew: _Crew, worker: Worker) -> None:
-    """Takes jobs until there are none left."""
-    while not crew.is_over.is_set():
-        try:
-            job, record = crew.waiting.get_nowait()
-        except queue.Empty:
-            return
-        try:
-            crew.results.put(_worked(crew, worker, job, record))
-        except CancelledError:
-            return  # the worker was stopped
-        except BaseException as bug:  # noqa: BLE001 (raised again by the main thread)
-            crew.results.put(_Result(job, {}, bug=bug))
-            return
-
-
-def _worked(crew: _Crew, worker: Worker, job: Job, record: Record | None) -> _Result:
-    prompt = crew.plan.prompt(job)
+def _worked(
+    plan: Plan, provider: Provider | Replay | None, worker: Worker, job: Job, record: Record | None
+) -> Done:
+    prompt = plan.prompt(job)
     if record is None:
-        assert crew.provider is not None
-        language = Remote(crew.plan.language(job.variant), worker)
-        task, settings = Task(prompt.text), crew.plan.sampled(job)
-        provider = crew.provider.of(job) if isinstance(crew.provider, Replay) else crew.provider
-        generation = generate(task, provider, language, settings)
+        assert provider is not None
+        language = Remote(plan.language(job.variant), worker)
+        asked = provider.of(job) if isinstance(provider, Replay) else provider
+        generation = generate(Task(prompt.text), asked, language, plan.sampled(job))
         if generation.failure is not None:
-            return _Result(job, store.failed(job, generation.failure), failure=generation.failure)
+            return Done(job, store.failed(job, generation.failure), failure=generation.failure)
         record = store.recorded(job, prompt, generation)
     if not record["ok"]:
-        return _Result(job, record)
+        return Done(job, record)
     measured = {**record, "measured": store.measured_with(prompt), "unmeasured": {}}
     png = neutral = None
     try:
-        drawn = worker.call(measures.draw, job.variant, record["program"], prompt)
-        png, neutral = drawn.png, drawn.neutral
-        measured["numbers"] = dict(drawn.numbers)
-        measured["requirements"] = [asdict(result) for result in drawn.requirements]
+        png, neutral, found = worker.call(measures.draw, job.variant, record["program"], prompt)
+        measured |= found
     except Broken as reason:
         measured["unmeasured"]["drawing"] = str(reason)
     try:
@@ -164,4 +151,4 @@ def _worked(crew: _Crew, worker: Worker, job: Job, record: Record | None) -> _Re
         measured["edits"] = asdict(edits)
     except Broken as reason:
         measured["unmeasured"]["editability"] = str(reason)
-    return _Result(job, measured, png, neutral)
+    return Done(job, measured, png, neutral)

@@ -1,11 +1,11 @@
-"""Intervals by resampling, and paired tests between languages, both prompt by prompt.
+"""Intervals by resampling, paired tests between languages, and how far raters agree.
 
 Runs of one prompt are not independent of each other, so prompts are what is drawn and what is compared.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -72,6 +72,14 @@ def _interval(cases: tuple[Case, ...]) -> Interval | None:
     return float(low), float(high)
 
 
+def wilson(part: int, count: int) -> Interval:
+    """Returns Wilson's score interval at 95 % of a share."""
+    from scipy.stats import binomtest
+
+    found = binomtest(part, count).proportion_ci(method="wilson")
+    return float(found.low), float(found.high)
+
+
 def by_prompt(cases: Sequence[Case]) -> dict[str, float]:
     """Returns the figure of each prompt."""
     sums = dict[str, tuple[float, float]]()
@@ -126,3 +134,30 @@ def holm(values: Sequence[float]) -> list[float]:
         least = max(least, min(1.0, (len(values) - rank) * values[index]))
         adjusted[index] = least
     return adjusted
+
+
+def alpha(groups: Iterable[Iterable[Sequence[float]]]) -> float | None:
+    """Returns Krippendorff's alpha of ranks (Computing Krippendorff's Alpha-Reliability, University of
+    Pennsylvania, 2011) over the units of all groups, each unit the ranks that raters gave it: 1 if they
+    agree, 0 as by chance. What chance does is taken from each group by itself, as ranks among two and among
+    five things are not the same values. None where no two raters saw one unit, or all values are equal.
+    """
+    observed = expected = 0.0
+    for units in groups:
+        seen, chance = _disagreement([unit for unit in units if len(unit) > 1])
+        observed, expected = observed + seen, expected + chance
+    return 1 - observed / expected if expected > 0 else None
+
+
+def _disagreement(units: Sequence[Sequence[float]]) -> tuple[float, float]:
+    """Returns the disagreement within units and that expected by chance, times the number of values."""
+    if not units:
+        return 0.0, 0.0
+    values, places = np.unique(np.concatenate(units), return_inverse=True)
+    tables = np.zeros((len(units), len(values)))
+    np.add.at(tables, (np.repeat(np.arange(len(units)), list(map(len, units))), places), 1)
+    counts = tables.sum(0)
+    middles = np.cumsum(counts) - counts / 2  # ranks differ by how many given values lie between them
+    squares = (middles[:, None] - middles) ** 2
+    pairs = np.einsum("ui,uj,ij->u", tables, tables, squares)
+    return float((pairs / (tables.sum(1) - 1)).sum()), float(counts @ squares @ counts / (counts.sum() - 1))

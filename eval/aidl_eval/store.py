@@ -19,7 +19,7 @@ from aidl_lang import Diagnostic, __version__
 from aidl_lang.common.world import replace
 from aidl_lang.tools.cli.files import UseError
 from aidl_lang.tools.llm.generation import Attempt, Generation
-from aidl_lang.tools.llm.messages import Usage, Verdict
+from aidl_lang.tools.llm.messages import Verdict
 
 Record = dict[str, Any]
 
@@ -128,13 +128,8 @@ def _damaged(path: Path) -> StoreError:
 
 
 def _is_record(found: Record, job: Job) -> bool:
-    """Tells whether a record belongs to its job and is complete."""
     names = {"attempts", "ok", "program", "missing", "fixes", "usage", "request"}
-    is_about = (found.get("prompt"), found.get("variant"), found.get("run")) == (
-        job.prompt,
-        job.variant,
-        job.run,
-    )
+    is_about = all(found.get(name) == value for name, value in asdict(job).items())
     return is_about and job.variant in VARIANTS and ("failure" in found or names <= found.keys())
 
 
@@ -163,7 +158,7 @@ def recorded(job: Job, prompt: Prompt, generation: Generation) -> Record:
         "program": verdict.program if verdict else None,
         "missing": list(verdict.missing) if verdict else [],
         "fixes": list(verdict.fixes) if verdict else [],
-        "usage": _usage(generation.usage),
+        "usage": asdict(generation.usage),
     }
 
 
@@ -177,7 +172,7 @@ def _attempt(attempt: Attempt) -> Record:
         "reply": attempt.reply.text,
         "model": attempt.reply.model,
         "finish": str(attempt.reply.finish),
-        "usage": _usage(attempt.reply.usage),
+        "usage": asdict(attempt.reply.usage),
         "seconds": attempt.reply.seconds,
         "date": attempt.reply.date,
         "program": attempt.program,
@@ -187,18 +182,8 @@ def _attempt(attempt: Attempt) -> Record:
 
 
 def _verdict(verdict: Verdict) -> Record:
-    return {
-        "ok": verdict.ok,
-        "stage": verdict.stage,
-        "codes": list(verdict.codes),
-        "fixes": list(verdict.fixes),
-        "missing": list(verdict.missing),
-        "numbers": dict(verdict.numbers),
-    }
-
-
-def _usage(usage: Usage) -> Record:
-    return {"input": usage.input, "output": usage.output, "cost": usage.cost}
+    kept = ("ok", "stage", "codes", "fixes", "missing")
+    return {**{name: getattr(verdict, name) for name in kept}, "numbers": dict(verdict.numbers)}
 
 
 def _settings(plan: Plan, provider: str) -> Record:

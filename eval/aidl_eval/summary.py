@@ -4,7 +4,6 @@ languages differ by.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import combinations
@@ -13,23 +12,13 @@ from typing import Any
 
 from aidl_eval.clip import Scores
 from aidl_eval.editability import EditOutcome
-from aidl_eval.plan import VARIANTS
+from aidl_eval.plan import VARIANTS, key_of
 from aidl_eval.preference import Study
 from aidl_eval.rendering import RenderedLanguage
 from aidl_eval.requirements import Status
-from aidl_eval.statistics import (
-    Case,
-    Comparison,
-    Interval,
-    by_prompt,
-    compared,
-    holm,
-    interval,
-)
+from aidl_eval.statistics import Case, Comparison, Interval, by_prompt, compared, holm, interval, wilson
 
 Record = Mapping[str, Any]
-_Z = 1.959963984540054
-"""Quantile of the normal distribution: 95 % lie within."""
 
 
 @dataclass(frozen=True)
@@ -56,19 +45,9 @@ class Share:
     @property
     def interval(self) -> Interval | None:
         """Returns Wilson's interval where each conversation counts once, else that by drawing prompts."""
-        return interval(self.cases) if self.several else self.wilson
-
-    @property
-    def wilson(self) -> Interval | None:
-        """Returns Wilson's score interval at 95 % (Journal of the American Statistical Association 22, 1927,
-        209).
-        """
-        if not self.count:
-            return None
-        n, p, z2 = self.count, self.part / self.count, _Z * _Z
-        middle = (p + z2 / (2 * n)) / (1 + z2 / n)
-        half = _Z / (1 + z2 / n) * math.sqrt(p * (1 - p) / n + z2 / (4 * n * n))
-        return max(0.0, middle - half), min(1.0, middle + half)
+        if self.several:
+            return interval(self.cases)
+        return wilson(self.part, self.count) if self.count else None
 
 
 @dataclass(frozen=True)
@@ -262,18 +241,16 @@ def _figures(held: Sequence[Record], scores: Scores, limit: int) -> dict[str, Fi
         "degrees": _number(valid, "degrees"),
         "requirements": Share.of((_met(r, is_geometric=False) for r in valid), several=True),
         "geometry": Share.of((_met(r, is_geometric=True) for r in valid), several=True),
-        "edits hold": Share.of((_held(r) for r in edited), several=True),
-        "editability": Share.of(
-            (_counted(r, r["edits"]["edits"], "outcome", EditOutcome.KEPT) for r in edited), several=True
-        ),
+        "edits hold": Share.of((_edits(r, "holds", True) for r in edited), several=True),
+        "editability": Share.of((_edits(r, "outcome", EditOutcome.KEPT) for r in edited), several=True),
         "knobs": _mean(edited, lambda r: r["edits"]["knobs"]),
         "detached": _number(valid, "detached"),
         "tokens in": _mean(held, lambda r: r["usage"]["input"]),
         "tokens out": _mean(held, lambda r: r["usage"]["output"]),
         "seconds": _mean(held, _seconds),
         "cost": Total(sum(c is not None for c in costs), None if None in costs else sum(costs)),
-        "CLIP": _mean(valid, lambda r: scores.of.get(_key(r)), scores.reason or ""),
-        "CLIP neutral": _mean(valid, lambda r: scores.neutral.get(_key(r)), scores.reason or ""),
+        "CLIP": _mean(valid, lambda r: scores.of.get(key_of(r)), scores.reason or ""),
+        "CLIP neutral": _mean(valid, lambda r: scores.neutral.get(key_of(r)), scores.reason or ""),
     }
 
 
@@ -281,20 +258,18 @@ def _share(records: Sequence[Record], holds: Callable[[Record], bool]) -> Share:
     return Share.of(((r["prompt"], int(holds(r)), 1) for r in records), several=False)
 
 
-def _counted(of: Record, results: Sequence[Record], name: str, wanted: str) -> tuple[str, int, int]:
-    return of["prompt"], sum(result[name] == wanted for result in results), len(results)
+def _counted(of: Record, results: Sequence[Record], name: str, wanted: object) -> tuple[str, int, int]:
+    """Returns the prompt of a record, how many results are as wanted, and how many there are."""
+    return of["prompt"], sum(result.get(name) == wanted for result in results), len(results)
 
 
 def _met(of: Record, *, is_geometric: bool) -> tuple[str, int, int]:
-    """Returns the prompt of a record, how many requirements of that kind are met, and how many there are."""
     asked = [x for x in of.get("requirements", ()) if bool(x.get("is_geometric")) == is_geometric]
     return _counted(of, asked, "status", Status.MET)
 
 
-def _held(of: Record) -> tuple[str, int, int]:
-    """Returns the prompt of a record, how many of its edits hold, and how many were made."""
-    edits = of["edits"]["edits"]
-    return of["prompt"], sum(bool(edit.get("holds")) for edit in edits), len(edits)
+def _edits(of: Record, name: str, wanted: object) -> tuple[str, int, int]:
+    return _counted(of, of["edits"]["edits"], name, wanted)
 
 
 def _mean(records: Sequence[Record], value: Callable[[Record], float | None], reason: str = "") -> Mean:
@@ -313,10 +288,6 @@ def _seconds(record: Record) -> float | None:
 
 def _within(number: int) -> Callable[[Record], bool]:
     return lambda r: _was_valid(r["attempts"][:number]) or (r["ok"] and len(r["attempts"]) <= number)
-
-
-def _key(record: Record) -> str:
-    return f"{record['prompt']}/{record['variant']}/{record['run']}"
 
 
 def _was_valid(attempts: Sequence[Record]) -> bool:

@@ -16,7 +16,7 @@ import numpy as np
 
 from aidl_eval import rendering, shapes
 from aidl_eval.regions import Part, Regions
-from aidl_eval.rendering import NOTHING, Rendered, RenderedConversation
+from aidl_eval.rendering import NOTHING, Rendered, RenderedLanguage
 from aidl_eval.shapes import Stroke
 from aidl_lang.common.colors import hexadecimal
 from aidl_lang.geometry.region import Polygon
@@ -32,7 +32,7 @@ _UNREAD = ("text", "image", "mask", "clipPath", "filter", "pattern", "foreignObj
 
 
 @dataclass(frozen=True)
-class Svg:
+class Svg(RenderedLanguage):
     name: str = "svg"
     suffix: str = ".svg"
     fences: tuple[str, ...] = ("svg", "xml")
@@ -44,14 +44,8 @@ class Svg:
             else "svgelements is not installed (pip install 'aidl-eval[svg]')"
         )
 
-    def guide(self) -> str:
-        return rendering.guide(self.name)
-
     def reads(self, text: str) -> bool:
         return "<svg" in text and render(text).ok
-
-    def conversation(self, before: str | None = None) -> RenderedConversation:
-        return RenderedConversation(self)
 
     def structures(self, program: str) -> int:
         """Counts the groups and symbols of a program."""

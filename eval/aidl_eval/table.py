@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from math import sqrt
+from typing import TypeAlias
 
 from aidl_eval.preference import Study
 from aidl_eval.statistics import RESAMPLES, SEED, Interval
@@ -65,7 +66,6 @@ def shown(figure: Figure) -> str:
 
 
 def _between(interval: Interval | None, times: float, digits: int) -> str:
-    """Returns an interval to stand behind a figure."""
     if interval is None:
         return ""
     low, high = (f"{times * end:,.{digits}f}" for end in interval)
@@ -114,7 +114,6 @@ def _study(rows: Sequence[Row], pairs: Sequence[Pair], study: Study | None) -> l
 
 
 def _preferred(rows: Sequence[Row], pairs: Sequence[Pair]) -> list[str]:
-    """Returns the table of how often each language was placed above each other."""
     cells = {}
     for pair in pairs:
         if pair.figure == "preferred":
@@ -142,7 +141,6 @@ def _conversations(row: Row) -> str:
 
 
 def _reasons(rows: Sequence[Row]) -> list[str]:
-    """Returns the reasons for missing measures, each once."""
     found = {
         f"{name} was not measured: {figure.reason}.": None
         for row in rows
@@ -171,66 +169,54 @@ def tabulated(lines: Sequence[Sequence[str]]) -> str:
     return "\n".join([head, "|---" * len(lines[0]) + "|", *body])
 
 
-def data(row: Row) -> list[dict[str, object]]:
-    """Returns the figures of a row, one by one, with all their data."""
-    return [
-        {"prompt": row.prompt, "variant": row.variant, "against": None, "figure": name, **_fields(figure)}
-        for name, figure in row.figures.items()
-    ]
-
-
 _FIELDS = ("value", "count", "part", "low", "high", "variance", "reason", "p", "p_holm")
+Entry: TypeAlias = dict[str, object]
 
 
-def _fields(figure: Figure) -> dict[str, object]:
-    found: dict[str, object]
-    match figure:
-        case Share(part, count):
-            low, high = figure.interval or (None, None)
-            found = {"value": figure.value, "count": count, "part": part, "low": low, "high": high}
-        case Mean(count, value, variance, reason):
-            low, high = figure.interval or (None, None)
-            found = {"value": value, "count": count, "low": low, "high": high}
-            found |= {"variance": variance, "reason": reason or None}
-        case Total(count, value):
-            found = {"value": value, "count": count}
-    return {name: found.get(name) for name in _FIELDS}
+def _entry(
+    figure: str,
+    prompt: str | None = None,
+    variant: str | None = None,
+    against: str | None = None,
+    interval: Interval | None = None,
+    **known: object,
+) -> Entry:
+    """Returns a figure as data: where it is from, and all fields, those that are not known empty."""
+    known["low"], known["high"] = interval or (None, None)
+    place = {"prompt": prompt, "variant": variant, "against": against, "figure": figure}
+    return {**place, **{name: known.get(name) for name in _FIELDS}}
 
 
-def differences(pairs: Sequence[Pair]) -> list[dict[str, object]]:
-    """Returns the comparisons in the same form: `value` is the difference, `count` the prompts."""
-    found = []
-    for pair in pairs:
-        of = pair.comparison
-        low, high = of.interval or (None, None)
-        known: dict[str, object] = {"value": of.difference, "count": of.prompts, "low": low, "high": high}
-        known |= {"p": of.p, "p_holm": of.adjusted}
-        place = {"prompt": None, "variant": pair.first, "against": pair.second, "figure": pair.figure}
-        found.append({**place, **{name: known.get(name) for name in _FIELDS}})
-    return found
+def _of_row(row: Row) -> Iterator[Entry]:
+    for name, figure in row.figures.items():
+        known: Entry = {"value": figure.value, "count": figure.count}
+        if isinstance(figure, Share):
+            known |= {"part": figure.part, "interval": figure.interval}
+        elif isinstance(figure, Mean):
+            known |= {"variance": figure.variance, "reason": figure.reason or None}
+            known["interval"] = figure.interval
+        yield _entry(name, row.prompt, row.variant, **known)  # type: ignore[arg-type]
 
 
-def judgements(study: Study | None) -> list[dict[str, object]]:
-    """Returns the figures of a study as a whole in the same form."""
+def _of_pair(pair: Pair) -> Entry:
+    """Returns a comparison: `value` is the difference, `count` the prompts."""
+    of = pair.comparison
+    known = {"value": of.difference, "count": of.prompts, "p": of.p, "p_holm": of.adjusted}
+    return _entry(pair.figure, None, pair.first, pair.second, of.interval, **known)
+
+
+def _of_study(study: Study | None) -> list[Entry]:
+    names = ("judgements", "skipped", "unasked", "outdated", "alpha")
     if study is None:
         return []
-    known = {
-        "raters": len(study.raters),
-        "judgements": study.judgements,
-        "skipped": study.skipped,
-        "unasked": study.unasked,
-        "outdated": study.outdated,
-        "alpha": study.alpha,
-    }
-    place = {"prompt": None, "variant": None, "against": None}
-    empty = dict.fromkeys(_FIELDS)
-    return [{**place, "figure": name, **empty, "value": value} for name, value in known.items()]
+    known = {"raters": len(study.raters), **{name: getattr(study, name) for name in names}}
+    return [_entry(name, value=value) for name, value in known.items()]
 
 
 def to_csv(rows: Sequence[Row], pairs: Sequence[Pair] = (), study: Study | None = None) -> str:
     """Returns one line for each figure of each row, then one for each comparison, then those of a study."""
     columns = ("prompt", "variant", "against", "figure", *_FIELDS)
-    lines = [*(line for row in rows for line in data(row)), *differences(pairs), *judgements(study)]
+    lines = [*(line for row in rows for line in _of_row(row)), *map(_of_pair, pairs), *_of_study(study)]
     return csv_text([columns, *([line.get(column) for column in columns] for line in lines)])
 
 
@@ -238,11 +224,11 @@ def to_json(
     rows: Sequence[Row], prompts: Sequence[Row], pairs: Sequence[Pair] = (), study: Study | None = None
 ) -> str:
     """Returns the same as data, with how intervals and probabilities were had."""
-    lines: dict[str, object]
-    lines = {"variants": [line for row in rows for line in data(row)]}
-    lines["prompts"] = [line for row in prompts for line in data(row)]
-    lines["pairs"] = differences(pairs)
-    if study is not None:
-        lines["study"] = judgements(study)
-    lines["method"] = {"resamples": RESAMPLES, "seed": SEED, "test": "paired permutation, two-sided"}
+    lines: dict[str, object] = {
+        "variants": [line for row in rows for line in _of_row(row)],
+        "prompts": [line for row in prompts for line in _of_row(row)],
+        "pairs": list(map(_of_pair, pairs)),
+        **({} if study is None else {"study": _of_study(study)}),
+        "method": {"resamples": RESAMPLES, "seed": SEED, "test": "paired permutation, two-sided"},
+    }
     return json.dumps(lines, indent=1, ensure_ascii=False) + "\n"

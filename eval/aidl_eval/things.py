@@ -100,7 +100,6 @@ def covered(group: Group) -> Region:
 
 
 def _alone(group: Group) -> SolvedModel:
-    """Returns a model of only these parts."""
     geometry = tuple(part for part in group if isinstance(part, SolvedGeometry))
     solids = tuple(part for part in group if isinstance(part, SolvedStructure))
     nowhere = Frame(0.0, 0.0, 0.0)
@@ -125,7 +124,6 @@ def _less(part: Part, others: Set[str]) -> Iterator[Part]:
 
 
 def _within(part: Part) -> set[str]:
-    """Returns the paths of everything in a part."""
     found: set[str] = set()
     left = [part]
     while left:

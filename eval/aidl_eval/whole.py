@@ -12,6 +12,7 @@ from aidl_eval.regions import Regions
 from aidl_lang.geometry.boolean import common, region_distance
 from aidl_lang.geometry.curves import Line, inward
 from aidl_lang.geometry.intersect import near_pairs
+from aidl_lang.geometry.network import Joined
 from aidl_lang.geometry.region import Face, Loop, Region, measure, polygon_area
 
 NEAR = 0.02
@@ -35,21 +36,14 @@ _SAMPLES = 48
 
 def pieces(whole: Region) -> float:
     """Counts the groups of material further apart than a fiftieth of the drawing's size."""
-    group = list(range(len(whole.faces)))
-
-    def head(k: int) -> int:
-        while group[k] != k:
-            k = group[k]
-        return k
-
-    boxes = [Region((face,)).box for face in whole.faces]
-    reach = NEAR * _size(whole)
-    for i, j in near_pairs(boxes, reach):
-        if head(i) != head(j):
-            closest = region_distance(Region((whole.faces[i],)), Region((whole.faces[j],)))
+    faces = [Region((face,)) for face in whole.faces]
+    joined, reach = Joined(), NEAR * _size(whole)
+    for i, j in near_pairs([face.box for face in faces], reach):
+        if joined.root(i) != joined.root(j):
+            closest = region_distance(faces[i], faces[j])
             if closest is not None and closest[0] <= reach:
-                group[head(j)] = head(i)
-    return float(len({head(k) for k in group}))
+                joined.join(i, j)
+    return float(len(joined.groups(range(len(faces)))))
 
 
 def symmetry(whole: Region) -> float:

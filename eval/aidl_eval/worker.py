@@ -6,7 +6,7 @@ from collections.abc import Callable
 from concurrent.futures import CancelledError
 from dataclasses import dataclass, field, replace
 from itertools import count
-from typing import Any, TypeVar, cast
+from typing import Any, TypeAlias, TypeVar, cast
 
 from aidl_eval.rendering import Wrapped
 from aidl_lang.common.processes import Broke, Crew, Guarded, Limit
@@ -14,8 +14,6 @@ from aidl_lang.tools.llm.messages import Conversation, Language, Verdict
 
 T = TypeVar("T")
 
-SECONDS = 60.0
-"""Seconds for one task of a worker."""
 _MEMORY = 4 << 30
 """Address space of a worker, bytes."""
 _LAST = 1_000_000
@@ -29,7 +27,7 @@ class Broken(Exception):  # noqa: N818 (what came of a program, no error of ours
 class Worker:
     """A process for tasks, restarted after one breaks it. To be used by one thread."""
 
-    def __init__(self, seconds: float = SECONDS) -> None:
+    def __init__(self, seconds: float) -> None:
         self._seconds = seconds
         self._pool = Guarded(1, "aidl_eval.measures", _MEMORY)
         self._crew: Crew[str, Any] = Crew(self._pool)
@@ -67,7 +65,7 @@ class Remote(Wrapped):
 
     def reads(self, text: str) -> bool:
         try:
-            return self.worker.call(_reads, self.language, text)
+            return self.worker.call(self.language.reads, text)
         except Broken:
             return False
 
@@ -108,7 +106,7 @@ class RemoteConversation:
 
     def _call(self, task: Callable[..., Verdict], argument: object) -> Verdict:
         state = (self.number, self.language, self.before, tuple(self.programs))
-        return self.worker.call(task, *state, argument)
+        return self.worker.call(task, state, argument)
 
 
 def _unjudged(program: str, reason: str) -> Verdict:
@@ -130,32 +128,29 @@ _open: list[_Open] = []
 """In a worker: the present conversation."""
 
 
-def _resumed(number: int, language: Language, before: str | None, programs: tuple[str, ...]) -> _Open:
+_State: TypeAlias = tuple[int, Language, str | None, tuple[str, ...]]
+"""The number of a conversation, its language, the program that it is to change, and those judged so far."""
+
+
+def _resumed(state: _State) -> _Open:
+    number, language, before, programs = state
     if not _open or _open[0].number != number or len(_open[0].verdicts) != len(programs):
         conversation = language.conversation(before)
         _open[:] = [_Open(number, conversation, [conversation.judge(program) for program in programs])]
     return _open[0]
 
 
-def _judge(
-    number: int, language: Language, before: str | None, programs: tuple[str, ...], program: str
-) -> Verdict:
-    state = _resumed(number, language, before, programs)
+def _judge(state: _State, program: str) -> Verdict:
+    resumed = _resumed(state)
     try:
-        verdict = state.conversation.judge(program)
+        verdict = resumed.conversation.judge(program)
     except BaseException:
         _open.clear()  # it may hold half of the program
         raise
-    state.verdicts.append(verdict)
+    resumed.verdicts.append(verdict)
     return replace(verdict, compiled=None)
 
 
-def _finish(
-    number: int, language: Language, before: str | None, programs: tuple[str, ...], index: int
-) -> Verdict:
-    state = _resumed(number, language, before, programs)
-    return replace(state.conversation.finish(state.verdicts[index]), compiled=None)
-
-
-def _reads(language: Language, text: str) -> bool:
-    return language.reads(text)
+def _finish(state: _State, index: int) -> Verdict:
+    resumed = _resumed(state)
+    return replace(resumed.conversation.finish(resumed.verdicts[index]), compiled=None)

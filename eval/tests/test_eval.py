@@ -77,13 +77,13 @@ def test_a_second_call_asks_only_for_what_is_missing(evaluation: Evaluation) -> 
     chosen = ("--prompts", "telephone", "--variants", "full", "--runs")
     broken = evaluation(*chosen, "2")
     assert broken.code == 1
-    assert "there is no recording of telephone, full, run 2" in broken.err
+    assert "nothing is said of telephone, full, run 2" in broken.err
     assert "1 conversations are left to be had: the same command goes on with them" in broken.err
     assert evaluation.record("telephone", "full", 2)["failure"]["code"].startswith("E09")
     first = evaluation.contents()
 
+    evaluation.model.said.clear()  # the first must not be asked for
     evaluation.say("telephone", "full", 2, fenced(FLAT))
-    shutil.rmtree(evaluation.folder / "recordings" / "telephone" / "full" / "1")  # it must not be asked for
     again = evaluation(*chosen, "2")
     assert again.code == 0
     assert "1/1 telephone, full, run 2: valid after" in again.err
@@ -162,30 +162,12 @@ def test_a_model_that_cannot_be_reached_is_not_asked_for_ever(evaluation: Evalua
 
 
 def test_an_interrupt_leaves_what_is_done(evaluation: Evaluation) -> None:
-    evaluation.say("telephone", "full", 1, fenced(FLAT))
+    (evaluation.folder / "reply").write_text(fenced(FLAT))
     slow = evaluation.folder / "slow.sh"
-    replay = evaluation.command()[-1].removeprefix("exec:")
-    slow.write_text(
-        f'[ -e "{evaluation.folder}/begun" ] && exec sleep 60\n'
-        f'touch "{evaluation.folder}/begun"\nexec {replay}\n'
-    )
-    command = evaluation.command(
-        "--prompts",
-        "telephone",
-        "--variants",
-        "full",
-        "--runs",
-        "2",
-        "--jobs",
-        "1",
-        "--provider",
-        f"exec:sh {slow}",
-    )
-    running = subprocess.Popen(
-        command,
-        stderr=subprocess.PIPE,
-        stdout=subprocess.PIPE,
-    )
+    slow.write_text("[ -e begun ] && exec sleep 60\ntouch begun\nexec cat reply\n")
+    chosen = ("--prompts", "telephone", "--variants", "full", "--runs", "2")
+    command = evaluation.command(*chosen, "--jobs", "1", "--provider", f"exec:sh {slow}")
+    running = subprocess.Popen(command, stderr=subprocess.PIPE, stdout=subprocess.PIPE)
     finished = evaluation.out / "records" / "telephone" / "full" / "1.json"
     for _ in range(1200):
         if finished.exists() or running.poll() is not None:

@@ -12,7 +12,7 @@ import pytest
 from numpy.typing import NDArray
 from PIL import Image, ImageColor
 
-from aidl_eval import editability, pictures
+from aidl_eval import editability, measures, pictures
 from aidl_eval.plan import VARIANTS
 from aidl_eval.regions import Regions, of_drawing
 from aidl_eval.rendering import RenderedLanguage
@@ -21,7 +21,7 @@ from aidl_eval.whole import MEASURES
 from aidl_lang.common.source import SourceFile
 from eval.tests import scripted
 from eval.tests.asked import NAMES, prompts
-from eval.tests.conftest import Evaluation
+from eval.tests.conftest import Evaluation, unedited
 
 QUICK = ("coffee_mug", "robot_face")
 TOUCHING = {"steam_locomotive": ("openings", "fields", "teeth")}
@@ -134,6 +134,7 @@ def test_a_recording_goes_through_the_whole_harness(
     evaluation: Evaluation, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("eval.tests.test_languages.PYTHONS", {})  # they take seconds to load
+    monkeypatch.setattr(measures, "edit", unedited)
     replay(evaluation, ("birdhouse",), monkeypatch)
 
 

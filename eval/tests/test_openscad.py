@@ -11,7 +11,7 @@ import pytest
 from PIL import Image
 
 from aidl_eval import openscad, pictures, rendering
-from aidl_eval.openscad import OpenScad, knobs, parts, render, structures
+from aidl_eval.openscad import OpenScad, parts, render
 from aidl_eval.sandbox import fence
 from aidl_eval.shapes import PIXELS
 
@@ -29,9 +29,9 @@ difference() { plate(); translate([20, 20]) circle(r = 10, $fn = 4); }
 
 
 def test_knobs_are_the_plain_numbers_of_the_top_level() -> None:
-    assert knobs(PLATE) == {"width": 80.0, "h": 40.5}
-    assert knobs("a = -1e3; a = 2; { b = 3; }") == {"a": 2.0}
-    assert structures(PLATE) == 1
+    assert OpenScad().knobs(PLATE) == {"width": 80.0, "h": 40.5}
+    assert OpenScad().knobs("a = -1e3; a = 2; { b = 3; }") == {"a": 2.0}
+    assert OpenScad().structures(PLATE) == 1
 
 
 @needs_openscad
@@ -125,7 +125,8 @@ OUT_OF_TIME_OR_MEMORY = ("error: rendering took longer than 2 s", "error: OpenSC
 def test_what_takes_too_much_is_told(
     program: str, error: str | tuple[str, ...], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(rendering, "SECONDS", 2)
+    if error is OUT_OF_TIME_OR_MEMORY:
+        monkeypatch.setattr(rendering, "SECONDS", 2)
     said = OpenScad().conversation().judge(program)
     assert not said.ok
     assert any(line.startswith(error) for line in said.feedback.splitlines()), said.feedback
@@ -214,8 +215,5 @@ def test_what_stands_side_by_side_is_a_part_of_its_own() -> None:
 def test_a_tree_is_opened_down_to_its_shapes() -> None:
     shapes = "\t\tsquare(size = [1, 1]);\n\t\tcircle(r = 1);\n"
     tree = f"group() {{\n\tgroup();\n\tcolor([1, 0, 0, 1]) {{\n{shapes}\t}}\n}}\n"
-    assert [(p.text, p.color) for p in parts(tree)] == [
-        ("square(size = [1, 1]);", "#ff0000"),
-        ("circle(r = 1);", "#ff0000"),
-    ]
+    assert parts(tree) == [("square(size = [1, 1]);", "#ff0000"), ("circle(r = 1);", "#ff0000")]
     assert parts("") == []

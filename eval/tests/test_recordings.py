@@ -9,12 +9,11 @@ from pathlib import Path
 import pytest
 
 from aidl_eval import measures
-from aidl_eval.editability import Edits
 from aidl_eval.openscad import OpenScad
 from aidl_eval.recordings import RecordingError, load
 from aidl_eval.summary import Share
 from aidl_eval.table import shown
-from eval.tests.conftest import Evaluation
+from eval.tests.conftest import Evaluation, unedited
 from tests.commands import Result
 from tests.documents import ROOT
 
@@ -154,13 +153,9 @@ def test_what_the_command_line_refuses(evaluation: Evaluation) -> None:
     assert not evaluation.out.exists()
 
 
-def unedited(*_: object) -> Edits:
-    return Edits(0, ())
-
-
 def test_the_recording_of_version_0_1(evaluation: Evaluation, monkeypatch: pytest.MonkeyPatch) -> None:
     """Its table in the documentation; of OpenSCAD only last programs were kept, all of them valid."""
-    monkeypatch.setattr(measures, "edit", unedited)  # dozens of compiles, and nothing is asked of them
+    monkeypatch.setattr(measures, "edit", unedited)
     kept = {conversation.job.key: conversation for conversation in load(TRIAL)}
     assert len(kept) == 18
     assert sum(len(c.replies) for c in kept.values() if c.job.variant == "full") == 24

@@ -22,42 +22,13 @@ from eval.tests.asked import NAMES, TEXTS, prompts
 from tests.documents import ROOT
 
 PROGRAMS = Path(__file__).parent / "programs"
-ASKED = """old-school telephone
-lighthouse
-teapot
-bicycle
-mailbox
-table lamp
-house with a chimney
-coffee mug
-sailing boat
-acoustic guitar
-robot face
-pair of scissors
-wall clock
-chess rook
-panelled door with a handle
-tractor
-gear with mounting holes
-cabinet with drawers
-fountain pen
-steam locomotive
-windmill
-film camera
-office chair
-claw hammer
-sunglasses
-castle
-space rocket
-birdhouse
-floppy disk
-wall socket plate
-game controller
-umbrella
-barbell
-toaster
-street lamp
-padlock"""
+ASKED = """
+old-school telephone, lighthouse, teapot, bicycle, mailbox, table lamp, house with a chimney, coffee
+mug, sailing boat, acoustic guitar, robot face, pair of scissors, wall clock, chess rook, panelled door
+with a handle, tractor, gear with mounting holes, cabinet with drawers, fountain pen, steam locomotive,
+windmill, film camera, office chair, claw hammer, sunglasses, castle, space rocket, birdhouse, floppy
+disk, wall socket plate, game controller, umbrella, barbell, toaster, street lamp, padlock
+"""
 
 
 def good(name: str) -> str:
@@ -76,9 +47,10 @@ def unmet(prompt: Prompt, text: str) -> dict[str, str]:
 
 
 def test_prompts_are_those_of_the_experiment_in_their_order() -> None:
-    assert list(TEXTS.values()) == ASKED.splitlines()
+    asked = " ".join(ASKED.split()).split(", ")
+    assert list(TEXTS.values()) == asked
     assert {name: prompt.text for name, prompt in prompts().items()} == TEXTS
-    assert [prompt.text for prompt in load(ROOT / "eval/aidl_eval/prompts")] == ASKED.splitlines()
+    assert [prompt.text for prompt in load(ROOT / "eval/aidl_eval/prompts")] == asked
 
 
 @pytest.mark.parametrize("name", NAMES)

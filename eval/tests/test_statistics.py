@@ -1,13 +1,14 @@
-"""Intervals and tests, against cases worked out by hand and against scipy."""
+"""Intervals, tests and agreement, against cases worked out by hand, published ones, and scipy."""
 
 from __future__ import annotations
 
 import warnings
+from itertools import permutations
 
 import numpy as np
 import pytest
 
-from aidl_eval.statistics import RESAMPLES, SEED, Case, by_prompt, compared, holm, interval
+from aidl_eval.statistics import RESAMPLES, SEED, Case, alpha, by_prompt, compared, holm, interval
 
 
 def cases(*values: float, prompt: str = "") -> list[Case]:
@@ -101,3 +102,64 @@ def test_holm_worked_out_by_hand() -> None:
     """0.01 by 4, 0.02 by 3, 0.03 by 2 (which is 0.06 already), 0.5 by 1."""
     assert holm([0.5, 0.01, 0.03, 0.02]) == pytest.approx([0.5, 0.04, 0.06, 0.06])
     assert holm([]) == []
+
+
+# --- Krippendorff's alpha ---------------------------------------------------------------------------
+
+_ = None
+OBSERVERS = (
+    (1, 2, 3, 3, 2, 1, 4, 1, 2, _, _, _),
+    (1, 2, 3, 3, 2, 2, 4, 1, 2, 5, _, 3),
+    (_, 3, 3, 3, 2, 3, 4, 2, 2, 5, 1, _),
+    (1, 2, 3, 3, 2, 4, 4, 1, 2, 5, 1, _),
+)
+"""Krippendorff 2011, part C: four observers, twelve units, some values missing."""
+UNITS = [[value for value in unit if value is not None] for unit in zip(*OBSERVERS, strict=True)]
+
+
+def test_published_value_of_agreement() -> None:
+    assert alpha([UNITS]) == pytest.approx(0.815, abs=5e-4)
+
+
+def by_definition(units: list[list[float]]) -> float:
+    """1 - D_o / D_e with the ordinal metric, pair by pair."""
+    paired = [unit for unit in units if len(unit) > 1]
+    given = [value for unit in paired for value in unit]
+
+    def square(c: float, k: float) -> float:
+        low, high = min(c, k), max(c, k)
+        between = sum(low <= value <= high for value in given)
+        return 0.0 if c == k else (between - (given.count(c) + given.count(k)) / 2) ** 2
+
+    observed = sum(sum(square(*pair) for pair in permutations(unit, 2)) / (len(unit) - 1) for unit in paired)
+    expected = sum(square(*pair) for pair in permutations(given, 2)) / (len(given) - 1)
+    return 1 - observed / expected
+
+
+def test_agreement_on_random_units_as_by_definition() -> None:
+    random = np.random.default_rng(5)
+    for _number in range(20):
+        units = [list(random.integers(1, 5, random.integers(0, 5)).astype(float)) for _unit in range(12)]
+        assert alpha([units]) == pytest.approx(by_definition(units))
+
+
+def test_ends_of_agreement() -> None:
+    assert alpha([[[1, 1], [2, 2], [3, 3]]]) == 1
+    assert alpha([[[1, 2], [2, 1]]]) == pytest.approx(-0.5)
+    assert alpha([]) is None
+    assert alpha([[[1], [2], []]]) is None
+    assert alpha([[[2, 2], [2, 2]]]) is None
+
+
+def test_ranks_among_two_and_among_five_are_no_agreement() -> None:
+    """Raters who rank by lot agree on nothing, also where some ranks can be given to few units only."""
+    random = np.random.default_rng(2)
+    groups = []
+    for size in (2, 8):
+        ranked = [[random.permutation(size) + 1 for _rater in range(3)] for _sheet in range(200)]
+        groups.append([[float(r[n]) for r in sheet] for sheet in ranked for n in range(size)])
+    apart, together = alpha(groups), alpha([groups[0] + groups[1]])
+    assert apart is not None
+    assert together is not None
+    assert abs(apart) < 0.03
+    assert together > 0.1

@@ -10,7 +10,7 @@ from aidl_eval.worker import Broken, Remote, Worker
 from eval.tests.fakes import Fake, obey
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def worker() -> Iterator[Worker]:
     worker = Worker(seconds=3.0)
     yield worker

@@ -5,15 +5,12 @@ from __future__ import annotations
 import json
 import os
 import stat
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
 from tests.cli.conftest import GOOD
-from tests.commands import Result
-
-Aidl = Callable[..., Result]
+from tests.commands import Aidl, Result
 
 
 def test_default_output_stands_beside_the_program(aidl: Aidl, folder: Path) -> None:

@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
 from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
 
-from tests.commands import Result
+from tests.commands import Aidl, Result
 
-Aidl = Callable[..., Result]
 OLD = """\
 /// Two plates and a label.
 assembly desk {

@@ -5,14 +5,12 @@ from __future__ import annotations
 import json
 import re
 import sys
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
-from tests.commands import Result
+from tests.commands import Aidl
 
-Aidl = Callable[..., Result]
 RANGED = """\
 param width = 40 in 20..200
 param free = 3

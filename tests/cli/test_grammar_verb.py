@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
 from aidl_lang.tools.grammars import FORMATS, export
-from tests.commands import Result
-
-Aidl = Callable[..., Result]
+from tests.commands import Aidl, Result
 
 
 @pytest.mark.parametrize("format", FORMATS)

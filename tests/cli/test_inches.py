@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import io
 import re
-from collections.abc import Callable
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -17,9 +16,7 @@ from PIL import Image
 from svgelements import SVG
 from svgelements import Path as Shape
 
-from tests.commands import Result
-
-Aidl = Callable[..., Result]
+from tests.commands import Aidl
 
 PLATE = """\
 @thickness(3mm)

@@ -4,16 +4,13 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
 import aidl_lang
 from aidl_lang.common.materials import densities, density, similar
-from tests.commands import Result
-
-Aidl = Callable[..., Result]
+from tests.commands import Aidl, Result
 
 BOX = """\
 @material("6 mm birch plywood") @thickness(6mm)

@@ -7,8 +7,6 @@ import subprocess
 import sys
 from pathlib import Path
 
-import pytest
-
 from tests.documents import ROOT
 
 ELSEWHERE = '''
@@ -41,61 +39,13 @@ os.supports_dir_fd = set()
 for name in ("SIGHUP", "SIGALRM", "SIGUSR1", "pthread_sigmask"):
     delattr(signal, name)
 '''
-PLATE = """
+PLATE = """\
 solid plate {
     param width = 60 in 40..80
     body = rectangle(width: width, height: 20)
     hole eye { rim = circle(radius: 4) }
 }
 """
-
-
-@pytest.fixture
-def elsewhere(tmp_path: Path) -> Path:
-    """A folder with a program, beside one that takes modules away from each Python that starts."""
-    (tmp_path / "taken").mkdir()
-    (tmp_path / "taken" / "sitecustomize.py").write_text(ELSEWHERE)
-    (tmp_path / "work").mkdir()
-    (tmp_path / "work" / "plate.aidl").write_text(PLATE)
-    return tmp_path / "work"
-
-
-def run(folder: Path, *words: str) -> str:
-    """What a command says, which must end well."""
-    path = os.pathsep.join([str(folder.parent / "taken"), str(ROOT)])
-    result = subprocess.run(
-        [sys.executable, *words],
-        cwd=folder,
-        env={**os.environ, "PYTHONPATH": path, "NO_COLOR": "1"},
-        stdout=subprocess.PIPE,
-        stderr=subprocess.STDOUT,
-        text=True,
-        timeout=120,
-        check=False,
-    )
-    said = result.stdout
-    assert result.returncode == 0, said
-    assert "Traceback" not in said, said
-    return said
-
-
-def test_the_modules_are_taken_away(elsewhere: Path) -> None:
-    told = run(
-        elsewhere,
-        "-c",
-        "try:\n import fcntl\nexcept ImportError: print('gone')",
-    )
-    assert told == "gone\n"
-
-
-def test_every_module_loads(elsewhere: Path) -> None:
-    walk = (
-        "import importlib, pkgutil, aidl_lang\n"
-        "for found in pkgutil.walk_packages(aidl_lang.__path__, 'aidl_lang.'):\n"
-        "    found.name.endswith('__main__') or importlib.import_module(found.name)\n"
-        "print('all')"
-    )
-    assert run(elsewhere, "-c", walk).endswith("all\n")
 
 
 COMMANDS = {
@@ -109,24 +59,48 @@ COMMANDS = {
     "compile all.aidl -o all.svg": "solved",
 }
 """What a command says; the last one imports, by folders that cannot be held open."""
-ONE_AFTER_THE_OTHER = """
-import sys
+ALL = """
+import importlib, pkgutil, sys
+import aidl_lang
 from aidl_lang.tools.cli import main
 
 if __name__ == "__main__":  # not in the processes that a command starts
+    try:
+        import fcntl
+    except ImportError:
+        print("gone\\f", end="", flush=True)
     for words in sys.argv[1:]:
         assert main(words.split()) == 0, words
         print("\\f", end="", flush=True)
+    for found in pkgutil.walk_packages(aidl_lang.__path__, "aidl_lang."):
+        found.name.endswith("__main__") or importlib.import_module(found.name)
+    print("all")
 """
 
 
-def test_commands_work(elsewhere: Path) -> None:
-    (elsewhere / "plate.aidl").write_text(PLATE.lstrip())
-    (elsewhere / "parts").mkdir()
-    (elsewhere / "parts" / "washer.aidl").write_text("solid washer(d) { rim = circle(diameter: d) }")
-    (elsewhere / "all.aidl").write_text('import "parts/washer.aidl"\nassembly a { w = washer(d: 9) }\n')
-    (elsewhere / "commands.py").write_text(ONE_AFTER_THE_OTHER)
-    *said, end = run(elsewhere, "commands.py", *COMMANDS).split("\f")
-    assert end == ""
+def test_commands_work_and_every_module_loads(tmp_path: Path) -> None:
+    work, taken = tmp_path / "work", tmp_path / "taken"
+    taken.mkdir()
+    (taken / "sitecustomize.py").write_text(ELSEWHERE)  # for each Python that starts
+    (work / "parts").mkdir(parents=True)
+    (work / "plate.aidl").write_text(PLATE)
+    (work / "parts" / "washer.aidl").write_text("solid washer(d) { rim = circle(diameter: d) }")
+    (work / "all.aidl").write_text('import "parts/washer.aidl"\nassembly a { w = washer(d: 9) }\n')
+    (work / "all.py").write_text(ALL)
+    path = os.pathsep.join([str(taken), str(ROOT)])
+    done = subprocess.run(
+        [sys.executable, "all.py", *COMMANDS],
+        cwd=work,
+        env={**os.environ, "PYTHONPATH": path, "NO_COLOR": "1"},
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        timeout=240,
+        check=False,
+    )
+    assert done.returncode == 0, done.stdout
+    assert "Traceback" not in done.stdout, done.stdout
+    begun, *said, end = done.stdout.split("\f")
+    assert (begun, end) == ("gone", "all\n")
     for (words, says), of_it in zip(COMMANDS.items(), said, strict=True):
         assert says in of_it, words

@@ -4,13 +4,11 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Callable
 from pathlib import Path
 
 import aidl_lang
-from tests.commands import Result
+from tests.commands import Aidl
 
-Aidl = Callable[..., Result]
 PLATE = """\
 solid plate {
     param way = 0 in 0..50

@@ -4,16 +4,13 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Callable
 from pathlib import Path
 
 import ezdxf
 import pytest
 
-from tests.commands import Result
+from tests.commands import Aidl
 from tests.export.readers import read_mesh, read_step
-
-Aidl = Callable[..., Result]
 
 PLATE = """\
 @thickness({thick}mm) {more}

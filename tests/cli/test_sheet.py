@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
 
 import pypdfium2
 
-from tests.commands import Result
-
-Aidl = Callable[..., Result]
+from tests.commands import Aidl
 
 
 def test_a_pdf_beside_the_program(aidl: Aidl, folder: Path):

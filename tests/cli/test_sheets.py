@@ -5,7 +5,6 @@ from __future__ import annotations
 import io
 import math
 import re
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -13,9 +12,7 @@ from svgelements import SVG
 from svgelements import Path as SvgPath
 
 from aidl_lang.export import FORMATS
-from tests.commands import Result
-
-Aidl = Callable[..., Result]
+from tests.commands import Aidl, Result
 
 BOX = """\
 assembly box {

@@ -7,20 +7,19 @@ import io
 import math
 import re
 from codecs import BOM_UTF8
-from collections.abc import Callable
+from operator import attrgetter
 from pathlib import Path
 
 import ezdxf
 import pypdfium2
 import pytest
+import shapely
 from shapely import LineString, Polygon, unary_union
 
 from aidl_lang import AidlError
 from tests import compiled
-from tests.commands import Result
+from tests.commands import Aidl, Result
 from tests.export.readers import read_mesh
-
-Aidl = Callable[..., Result]
 
 BOX = """\
 @thickness(3mm)
@@ -121,19 +120,8 @@ def test_the_cut_list(aidl: Aidl, box: Path) -> None:
 
 
 def test_the_cut_list_of_sheets(aidl: Aidl, box: Path) -> None:
-    aidl(
-        "compile",
-        "box.aidl",
-        "-o",
-        "cut.csv",
-        "-o",
-        "x.svg",
-        "--sheet",
-        "210x150",
-        "--kerf",
-        "0.2",
-        "--quiet",
-    )
+    sheet = ("--sheet", "210x150", "--kerf", "0.2", "--quiet")
+    aidl("compile", "box.aidl", "-o", "cut.csv", "-o", "x.svg", *sheet)
     parts, sheets = rows(box / "cut.csv")[1:4], rows(box / "cut.csv")[6:]
     assert rows(box / "cut.csv")[4] == []
     assert ",".join(rows(box / "cut.csv")[5]) == SHEETS
@@ -216,16 +204,8 @@ def test_numbers_lie_in_the_material_beside_what_is_engraved(aidl: Aidl, folder:
     assert found
     size, x, y = (float(v) for v in found.groups())
     left, right, middle = x - 0.3 * size, x + 0.3 * size, -y + 0.3 * size
-    frame = Polygon([(3, 3), (63, 3), (63, 33), (3, 33)]) - Polygon([(13, 8), (53, 8), (53, 28), (13, 28)])
-    text = Polygon(
-        [
-            (left, middle - size / 2),
-            (right, middle - size / 2),
-            (right, middle + size / 2),
-            (left, middle + size / 2),
-        ]
-    )
-    assert frame.contains(text)
+    frame = shapely.box(3, 3, 63, 33) - shapely.box(13, 8, 53, 28)
+    assert frame.contains(shapely.box(left, middle - size / 2, right, middle + size / 2))
     assert not left < 58 < right
     assert size > 3
 
@@ -252,19 +232,12 @@ def test_a_material_is_no_formula(aidl: Aidl, folder: Path) -> None:
     assert rows(folder / "x.csv")[1][3] == "'=1+1"
 
 
-@pytest.mark.parametrize(
-    ("written", "message"),
-    [
-        ("@quantity(0)", "`@quantity` takes a whole number of pieces from 1 to 1000, as in `@quantity(4)`"),
-        ("@quantity(1.5)", "`@quantity` takes a whole number of pieces from 1 to 1000, as in `@quantity(4)`"),
-        ("@quantity(3mm)", "`@quantity` takes a whole number of pieces from 1 to 1000, as in `@quantity(4)`"),
-        ("@quantity", "`@quantity` takes a whole number of pieces from 1 to 1000, as in `@quantity(4)`"),
-        ("@quantity(1e9)", "`@quantity` takes a whole number of pieces from 1 to 1000, as in `@quantity(4)`"),
-    ],
-)
-def test_quantities_that_are_none(written: str, message: str) -> None:
-    found = compiled.compiled(f"{written} solid p {{ r = rectangle(width: 20, height: 10) }}")
-    assert [(d.code, d.message) for d in found.diagnostics if d.is_error] == [("E0517", message)]
+@pytest.mark.parametrize("given", ["(0)", "(1.5)", "(3mm)", "", "(1e9)"])
+def test_quantities_that_are_none(given: str) -> None:
+    found = compiled.compiled(f"@quantity{given} solid p {{ r = rectangle(width: 20, height: 10) }}")
+    assert [(d.code, d.message) for d in found.diagnostics if d.is_error] == [
+        ("E0517", "`@quantity` takes a whole number of pieces from 1 to 1000, as in `@quantity(4)`")
+    ]
 
 
 def test_a_quantity_is_of_parts() -> None:
@@ -465,9 +438,8 @@ def test_slits_are_cut_once(aidl: Aidl, folder: Path, more: tuple[str, ...]) -> 
     assert result.code == 0
     found = list(ezdxf.readfile(folder / "h.dxf").modelspace())
     lines = [LineString([e.dxf.start.vec2, e.dxf.end.vec2]) for e in found if e.dxftype() == "LINE"]
-    outer, slot = sorted(
-        (Polygon(e.get_points("xy")) for e in found if e.dxftype() == "LWPOLYLINE"), key=_size
-    )
+    areas = [Polygon(e.get_points("xy")) for e in found if e.dxftype() == "LWPOLYLINE"]
+    slot, outer = sorted(areas, key=attrgetter("area"))
     assert len(lines) == 27
     assert {e.dxf.layer for e in found if e.dxftype() == "LINE"} == {"C05-inner"}
     ways = [*lines, outer.exterior, slot.exterior]
@@ -476,10 +448,6 @@ def test_slits_are_cut_once(aidl: Aidl, folder: Path, more: tuple[str, ...]) -> 
     corners = 2 * (2 * 27 - 10) + 4
     drawn = compiled.compiled(HINGE).drawing.measures["cover"].area
     assert left.area == pytest.approx(drawn + corners * 0.1**2 * (1 - math.pi / 4), abs=1e-3)
-
-
-def _size(polygon: Polygon) -> float:
-    return -polygon.area
 
 
 def test_slits_of_another_width_than_the_cut_are_told(aidl: Aidl, folder: Path) -> None:

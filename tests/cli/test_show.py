@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
-from tests.commands import Result
+from tests.commands import Aidl
 from tests.documents import ROOT
 
-Aidl = Callable[..., Result]
 TELEPHONE = str(ROOT / "examples" / "telephone.aidl")
 
 
@@ -52,7 +50,7 @@ def test_blocks_have_the_colours_of_the_parts(aidl: Aidl, monkeypatch: pytest.Mo
     ("protocol", "start"), [("kitty", "\x1b_Ga=T"), ("iterm", "\x1b]1337;File="), ("sixel", "\x1bP0;1;0q")]
 )
 def test_graphics_when_asked_for(aidl: Aidl, protocol: str, start: str):
-    assert aidl("show", TELEPHONE, "--protocol", protocol, "--width", "20").out.startswith(start)
+    assert aidl("show", "good.aidl", "--protocol", protocol, "--width", "20").out.startswith(start)
 
 
 def test_a_wrong_program_shows_nothing(aidl: Aidl):

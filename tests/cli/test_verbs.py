@@ -4,15 +4,13 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
 from aidl_lang.tools.cli.doc import structure_name
-from tests.commands import Result
+from tests.commands import Aidl, Result
 
-Aidl = Callable[..., Result]
 OUT_OF_REACH = """\
 assembly a {
     solid plate {

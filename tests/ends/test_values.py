@@ -32,13 +32,8 @@ def test_ends(of: Knob, expected: list[object]) -> None:
     assert ends(of) == expected
 
 
-def found(of: Knob, end: float, threshold: float) -> tuple[float, float, list[float]]:
-    """The limit of a param that works on this side of a threshold, and the values that were tried."""
-    sign = 1 if end > of.value else -1
-    return searched(of, end, lambda value: sign * value <= sign * threshold)
-
-
 def searched(of: Knob, end: float, works: Callable[[float], bool]) -> tuple[float, float, list[float]]:
+    """The limit of a param, and the values that were tried."""
     search, asked = limit(of, end), list[float]()
     try:
         value = next(search)
@@ -73,4 +68,5 @@ def test_what_fails_on_the_way_to_a_limit_is_the_limit() -> None:
 def test_limit_is_a_short_number(
     of: Knob, end: float, threshold: float, expected: tuple[float, float]
 ) -> None:
-    assert found(of, end, threshold)[:2] == expected
+    sign = 1 if end > of.value else -1
+    assert searched(of, end, lambda value: sign * value <= sign * threshold)[:2] == expected

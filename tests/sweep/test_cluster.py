@@ -16,6 +16,7 @@ import pytest
 from aidl_lang.common import processes as cluster_module
 from aidl_lang.common.diagnostics import AidlError
 from aidl_lang.common.processes import Broke, Cluster, Crew, EngineError, Limit
+from aidl_lang.tools.cli import main
 from tests.sweep.cluster import LocalCluster, free_port
 from tests.sweep.here import PLATE
 from tests.sweep.test_crew import obey
@@ -40,23 +41,21 @@ def two(tmp_path: Path) -> Iterator[LocalCluster]:
     cluster.close()
 
 
-def begin(folder: Path, table: str, count: int, *more: str) -> subprocess.Popen[str]:
+def write_programs(folder: Path) -> None:
     (folder / "lib.aidl").write_text(LIBRARY)
     (folder / "plate.aidl").write_text(PROGRAM)
-    name = table.removesuffix(".csv")
-    words = [
-        sys.executable,
-        "-m",
-        "aidl_lang",
-        "sweep",
-        "plate.aidl",
-        "-D",
-        f"width=40..120/{count // 2}",
-        "-D",
-        "style=*",
-    ]
-    words += ["-o", table, "-o", f"{name}/{{n}}.svg", "--no-timings", "--progress", "json", *more]
-    return subprocess.Popen(words, cwd=folder, stderr=subprocess.PIPE, text=True)
+
+
+def words_for(table: str, count: int, *more: str) -> list[str]:
+    varied = ["-D", f"width=40..120/{count // 2}", "-D", "style=*"]
+    outputs = ["-o", table, "-o", f"{table.removesuffix('.csv')}/{{n}}.svg"]
+    return ["sweep", "plate.aidl", *varied, *outputs, "--no-timings", "--progress", "json", *more]
+
+
+def begin(folder: Path, table: str, count: int, *more: str) -> subprocess.Popen[str]:
+    write_programs(folder)
+    command = [sys.executable, "-m", "aidl_lang", *words_for(table, count, *more)]
+    return subprocess.Popen(command, cwd=folder, stderr=subprocess.PIPE, text=True)
 
 
 def table_of(folder: Path, name: str) -> bytes:
@@ -93,12 +92,14 @@ def local(folder: Path, count: int) -> None:
     assert run.returncode == 1, said  # those wider than the sheet fail
 
 
-def test_a_sweep_on_a_cluster_equals_one_here(tmp_path: Path, shared: LocalCluster) -> None:
-    local(tmp_path, 12)
-    run = begin(tmp_path, "remote.csv", 12, "--on", shared.address)
-    said = run.communicate(timeout=240)[1]
-    assert run.returncode == 1, said
-    same(tmp_path, "local.csv", "remote.csv", 12)
+def test_a_sweep_on_a_cluster_equals_one_here(
+    tmp_path: Path, shared: LocalCluster, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    write_programs(tmp_path)
+    monkeypatch.chdir(tmp_path)
+    assert main(words_for("local.csv", 6)) == 1
+    assert main(words_for("remote.csv", 6, "--on", shared.address)) == 1
+    same(tmp_path, "local.csv", "remote.csv", 6)
 
 
 @pytest.mark.slow

@@ -41,17 +41,17 @@ def workers_of(run: subprocess.Popen[bytes]) -> list[int]:
     return [pid for pid, parent in parents.items() if parents.get(parent) == run.pid]
 
 
-def without_workers(folder: Path, sweeps: int, seed: int) -> None:
-    """Kills ten workers at random instants of each sweep."""
+def without_workers(folder: Path, sweeps: int, seed: int, *, widths: int, times: int) -> None:
+    """Kills so many workers at random instants of each sweep."""
     chance, kills = random.Random(seed), 0
     (folder / "plate.aidl").write_text(PLATE)
-    values = ["-D", "width=40..100/50", "-D", "style=*", "-o", "table.csv", "--no-timings", "--jobs", "2"]
-    words = [sys.executable, "-m", "aidl_lang", "sweep", "plate.aidl", *values]
+    values = ["-D", f"width=40..100/{widths}", "-D", "style=*", "-o", "table.csv", "--no-timings"]
+    words = [sys.executable, "-m", "aidl_lang", "sweep", "plate.aidl", *values, "--jobs", "2"]
     whole = b""
     for number in range(sweeps + 1):
         with open(folder / "said", "wb") as said:
             run = subprocess.Popen(words, cwd=folder, stderr=said, start_new_session=True)
-        left = 10 if number else 0
+        left = times if number else 0
         while left and run.poll() is None:
             time.sleep(chance.uniform(0.0, 0.15))
             for worker in chance.sample(found := workers_of(run), min(1, len(found))):
@@ -61,17 +61,17 @@ def without_workers(folder: Path, sweeps: int, seed: int) -> None:
         assert run.wait(120) == 0, (folder / "said").read_text()
         whole = whole or (folder / "table.csv").read_bytes()
         assert (folder / "table.csv").read_bytes() == whole
-    assert whole.count(b"\n") == 101
-    assert kills > 5 * sweeps
+    assert whole.count(b"\n") == 1 + 2 * widths
+    assert kills > times // 2 * sweeps
 
 
 def test_workers_that_are_killed_are_replaced(tmp_path: Path) -> None:
-    without_workers(tmp_path, 1, seed=3)
+    without_workers(tmp_path, 1, seed=3, widths=20, times=4)
 
 
 @pytest.mark.slow
 def test_workers_are_killed_at_two_hundred_instants(tmp_path: Path) -> None:
-    without_workers(tmp_path, 20, seed=4)
+    without_workers(tmp_path, 20, seed=4, widths=50, times=10)
 
 
 def killed(folder: Path, times: int, seed: int) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import json
 import shlex
+import shutil
 from codecs import BOM_UTF8
 from itertools import islice
 from math import pi
@@ -15,6 +16,7 @@ import pyarrow.parquet
 import pytest
 
 from aidl_lang.common.diagnostics import AidlError
+from aidl_lang.export.pdf import font_file
 from aidl_lang.tools.cli import main
 from aidl_lang.tools.sweeping.session import Sweep
 from tests.sweep.here import PLATE, Here, asked, sweep
@@ -132,6 +134,15 @@ def test_a_changed_import_is_seen(tmp_path: Path) -> None:
     assert (areas, engine.calls) == ([100.0, 200.0, 100.0], 3)
     sweep(tmp_path, ["w=10"], ["t.csv"], engine, text, cache=cache)
     assert engine.calls == 3
+
+
+def test_files_that_only_some_variants_ask_for_are_sent_after_them(tmp_path: Path) -> None:
+    for name in ("a.ttf", "b.ttf"):
+        shutil.copy(font_file(), tmp_path / name)
+    text = 'param face = "a.ttf"\ndrawing d { word = text("A", height: 5, font: face) }\n'
+    engine = Here()
+    session = sweep(tmp_path, ["face=a.ttf,b.ttf,c.ttf"], ["t.csv"], engine, text)
+    assert ([row.ok for row in session.rows], engine.calls) == ([True, True, False], 5)
 
 
 def test_it_stops_at_an_error_where_asked(tmp_path: Path) -> None:

@@ -302,15 +302,9 @@ def read(given: Mapping[str, object], compiled: Compiled | None = None) -> Asked
     Raises AidlError for an unknown option and for a value that it does not take.
     """
     parser, defaults = _parser()
-    known = sorted(defaults)
-    words = [
-        word
-        for name, value in given.items()
-        if value is not None
-        for word in _words(_known(name, known), value, is_flag=defaults[name] is False)
-    ]
+    asked = {_known(name, sorted(defaults)): value for name, value in given.items() if value is not None}
     try:
-        arguments = parser.parse_args(words)
+        arguments = parser.parse_args(_words(asked, defaults))
     except argparse.ArgumentError as reason:
         name = (reason.argument_name or "").lstrip("-").replace("-", "_")
         raise UseError("E0925", f"`{name}`: {reason.message}") from None
@@ -321,14 +315,7 @@ def said(arguments: argparse.Namespace) -> list[str]:
     """Returns the options of a drawing that are not the default, as the command line has them."""
     _, defaults = _parser(add_variant, add_strict)
     asked = {name: getattr(arguments, name) for name in sorted(defaults) if name != "timings"}
-    return [
-        word
-        for name, value in asked.items()
-        if value != defaults[name]
-        for word in _words(
-            name, sorted(value) if isinstance(value, frozenset) else value, is_flag=defaults[name] is False
-        )
-    ]
+    return _words({name: value for name, value in asked.items() if value != defaults[name]}, defaults)
 
 
 def _parser(
@@ -352,18 +339,22 @@ def _known(name: str, known: list[str]) -> str:
     raise UseError("E0925", f"there is no option `{name}`", *hints)
 
 
-def _words(name: str, value: object, *, is_flag: bool) -> list[str]:
-    option = f"--{name.replace('_', '-')}"
-    if is_flag != isinstance(value, bool):
-        has = "is on or off: `True` or `False`" if is_flag else "has a value, and is not on or off"
-        raise UseError("E0925", f"`{name}` {has}")
-    if is_flag:
-        return [option] if value else []
-    return [f"{option}={_text(name, value)}"]
+def _words(asked: Mapping[str, object], defaults: Mapping[str, object]) -> list[str]:
+    """Returns values of options by their names as the words of a command."""
+    words = []
+    for name, value in asked.items():
+        option, is_flag = f"--{name.replace('_', '-')}", defaults[name] is False
+        if is_flag != isinstance(value, bool):
+            has = "is on or off: `True` or `False`" if is_flag else "has a value, and is not on or off"
+            raise UseError("E0925", f"`{name}` {has}")
+        if not is_flag:
+            words.append(f"{option}={_text(name, value)}")
+        elif value:
+            words.append(option)
+    return words
 
 
 def _text(name: str, value: object) -> str:
-    """Returns a value as the command line has it."""
     if isinstance(value, str | Path):
         return str(value)
     if isinstance(value, int | float):
@@ -371,7 +362,7 @@ def _text(name: str, value: object) -> str:
 
         return f"{Decimal(repr(float(value) if isinstance(value, float) else int(value))):f}"
     if isinstance(value, Iterable):
-        items = list(value)
+        items = sorted(value) if isinstance(value, frozenset) else list(value)
         return ("," if all(isinstance(each, str) for each in items) else "x").join(
             _text(name, each) for each in items
         )

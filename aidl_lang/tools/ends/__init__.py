@@ -398,22 +398,20 @@ def _subject(faults: Sequence[Fault]) -> str:
 
 
 def described(sweep: Sweep) -> list[dict[str, Any]]:
-    return [_end(each) for each in sweep.turned]
-
-
-def _end(turned: Turned) -> dict[str, Any]:
-    beyond = turned.beyond
-    return {
-        "param": turned.knob.path,
-        "unit": turned.knob.unit,
-        "written": turned.knob.value,
-        "value": turned.value,
-        "ok": turned.ok,
-        "findings": _faults(turned.tried),
-        "works": turned.works,
-        "beyond": None if beyond is None else {"value": beyond[0], "findings": _faults(beyond[1])},
-        "seconds": round(turned.tried.seconds, 3),
-    }
+    return [
+        {
+            "param": each.knob.path,
+            "unit": each.knob.unit,
+            "written": each.knob.value,
+            "value": each.value,
+            "ok": each.ok,
+            "findings": _faults(each.tried),
+            "works": each.works,
+            "beyond": each.beyond and {"value": each.beyond[0], "findings": _faults(each.beyond[1])},
+            "seconds": round(each.tried.seconds, 3),
+        }
+        for each in sweep.turned
+    ]
 
 
 def _faults(tried: Tried) -> list[dict[str, Any]]:

@@ -229,7 +229,6 @@ def _heights(model: SolvedModel, drawing: Drawing) -> Iterator[tuple[str, tuple[
 
 
 def _meet(a: tuple[str, float, float] | None, b: tuple[str, float, float] | None) -> bool:
-    """Tells whether two bodies may be at one height."""
     if a is None or b is None or a[0] != b[0]:
         return True
     return min(a[2], b[2]) - max(a[1], b[1]) > 1e-9

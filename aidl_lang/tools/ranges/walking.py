@@ -221,7 +221,6 @@ class Walker:
         return found if min(a, b) < found < max(a, b) else None
 
     def _between(self, a: float, b: float, depth: int) -> None:
-        """Finds the changes between two values."""
         one, other = self.at(a), self.at(b)
         if changes := differences(one, other):
             middle = self._middle(a, b)
@@ -253,7 +252,6 @@ class Walker:
     # --- Jumps
 
     def _leaps(self) -> None:
-        """Finds the jumps between values of one kind."""
         values = [v for v in self.grid if self.at(v).is_solved]
         triples = list(zip(values, values[1:], values[2:], strict=False))
         uneven = [self._uneven(*triple)[1] for triple in triples]

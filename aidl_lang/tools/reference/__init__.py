@@ -61,7 +61,7 @@ def picture(entry: Entry) -> bytes:
     return picture_of(f"the example of `{entry.name}` ({entry.where})", entry.doc.example)
 
 
-def picture_of(name: str, program: str, theme: str = "colour") -> bytes:
+def picture_of(name: str, program: str, theme: str = "colour", *, dimension: bool = False) -> bytes:
     """Returns the drawing of a program as SVG. Raises ValueError if it does not compile."""
     from aidl_lang import pipeline  # a page in the terminal needs no solver
     from aidl_lang.common.render import render
@@ -72,7 +72,7 @@ def picture_of(name: str, program: str, theme: str = "colour") -> bytes:
     if not compiled.ok:
         why = "\n".join(render(d) for d in compiled.diagnostics)
         raise ValueError(f"{name} does not compile\n{why}")
-    return compiled.export(".svg", Options(compiled.show, theme=theme))
+    return compiled.export(".svg", Options(compiled.show, dimension, theme=theme))
 
 
 def entry_blocks(entry: Entry, level: str = "##") -> Iterator[str]:

@@ -143,7 +143,7 @@ def reference() -> Reference:
     found = {entry.name: entry for _, entries in sections for entry in entries}
     for entry in _library_entries(loaded):
         found[entry.name] = _joined(found[entry.name], entry) if entry.name in found else entry
-    aliases = {alias: _target(alias, loaded.aliases) for alias in loaded.aliases}
+    aliases = dict(loaded.aliases)  # none is a synonym of a synonym
     aliases |= {synonym: entry.name for entry in found.values() for synonym in entry.synonyms}
     synonyms: dict[str, list[str]] = {}
     for alias, target in aliases.items():
@@ -173,14 +173,6 @@ def _joined(described: Entry, defined: Entry) -> Entry:
         return replace(described, overloads=(*described.overloads, *defined.overloads))
     own = (replace(overload, doc=described.doc) for overload in described.overloads)
     return replace(defined, overloads=(*defined.overloads, *own))
-
-
-def _target(alias: str, aliases: Mapping[str, str]) -> str:
-    """Returns the meaning of a synonym, through synonyms of synonyms."""
-    seen = {alias}
-    while (alias := aliases[alias]) in aliases and alias not in seen:
-        seen.add(alias)
-    return alias
 
 
 def _library_entries(loaded: library.Library) -> list[Entry]:

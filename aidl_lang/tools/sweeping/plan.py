@@ -166,12 +166,11 @@ def _ranged(knob: Knob, written: str, *, is_drawn: bool) -> Axis:
     if low > high:
         turned = f"write `{found['high']}..{found['low']}`"
         raise wrong(f"the range `{written}` of `{knob.path}` runs backwards", turned)
+    step = _measure(knob, found["step"]) if found["step"] else knob.step
     if is_drawn:
-        step = _measure(knob, found["step"]) if found["step"] else knob.step
         return Axis(knob.path, (), Span(low, high, step))
     if found["count"]:
         return Axis(knob.path, tuple(_evenly(low, high, int(found["count"]), written)))
-    step = _measure(knob, found["step"]) if found["step"] else knob.step
     if step is None:
         hint = f"write `{written.strip()}/8` for eight of them, or `{written.strip()} step 5`"
         raise wrong(f"`{written}` does not say how many values `{knob.path}` takes", hint)

@@ -414,7 +414,6 @@ def _shapes() -> tuple[str, Any]:
 
 
 def _distance_to(x: Any, y: Any, x0: float, y0: float, x1: float, y1: float) -> Any:
-    """Returns the distance of each pixel from a stroke."""
     dx, dy = x1 - x0, y1 - y0
     along = ((x - x0) * dx + (y - y0) * dy) / (dx * dx + dy * dy or 1.0)
     along = np.clip(along, 0, 1)

@@ -1,4 +1,4 @@
-"""TextMate's names of the classes, and its rules as data."""
+"""What editors call the classes, and the rules of TextMate as data."""
 
 from __future__ import annotations
 
@@ -7,52 +7,63 @@ from typing import TypeAlias
 
 Rule: TypeAlias = dict[str, object]
 
-SCOPES: Mapping[str, str] = {
-    "comment.line": "comment.line",
-    "comment.documentation": "comment.line.documentation",
-    "comment.block": "comment.block",
-    "keyword.declaration": "keyword.declaration",
-    "keyword.demand": "keyword.other.demand",
-    "keyword.modifier": "storage.modifier",
-    "keyword.control": "keyword.control",
-    "keyword.import": "keyword.control.import",
-    "keyword.clause": "keyword.other.clause",
-    "keyword.operator": "keyword.operator.expression",
-    "constant.truth": "constant.language.boolean",
-    "operator.comparison": "keyword.operator.comparison",
-    "operator.arithmetic": "keyword.operator.arithmetic",
-    "operator.logic": "keyword.operator.logical",
-    "operator.range": "keyword.operator.range",
-    "operator.assignment": "keyword.operator.assignment",
-    "bracket": "punctuation.section",
-    "punctuation": "punctuation.separator",
-    "attribute.sign": "punctuation.definition.annotation",
-    "attribute": "entity.other.attribute-name",
-    "kind": "storage.type.kind",
-    "name.structure": "entity.name.type.structure",
-    "name.template": "entity.name.type.template",
-    "name.function": "entity.name.function.definition",
-    "name.definition": "variable.other.definition",
-    "name.parameter": "variable.parameter.definition",
-    "name.argument": "variable.parameter.argument",
-    "name.type": "support.type",
-    "name.member": "variable.other.property",
-    "name.everywhere": "variable.language",
-    "name.constant": "support.constant",
-    "name.module": "entity.name.namespace",
-    "name": "variable.other.readwrite",
-    "call.shape": "support.class.shape",
-    "call.constraint": "support.function.constraint",
-    "call.function": "support.function.library",
-    "call.member": "entity.name.function.call.member",
-    "call": "entity.name.function.call",
-    "number": "constant.numeric",
-    "unit": "keyword.other.unit",
-    "string": "string.quoted",
-    "escape": "constant.character.escape",
-    "unknown": "invalid.illegal",
+_NAMES: Mapping[str, tuple[str, ...]] = {
+    "comment.line": ("comment.line", "comment", "comment.line"),
+    "comment.documentation": (
+        "comment.line.documentation",
+        "comment.documentation",
+        "comment.line.documentation",
+    ),
+    "comment.block": ("comment.block", "comment", "comment.block"),
+    "keyword.declaration": ("keyword.declaration", "keyword", "keyword.storage.type"),
+    "keyword.demand": ("keyword.other.demand", "keyword"),
+    "keyword.modifier": ("storage.modifier", "keyword.modifier", "keyword.storage.modifier"),
+    "keyword.control": ("keyword.control", "keyword.conditional", "keyword.control.conditional"),
+    "keyword.control for": ("", "keyword.repeat", "keyword.control.repeat"),
+    "keyword.import": ("keyword.control.import", "keyword.import", "keyword.control.import"),
+    "keyword.clause": ("keyword.other.clause", "keyword"),
+    "keyword.operator": ("keyword.operator.expression", "keyword.operator"),
+    "constant.truth": ("constant.language.boolean", "boolean", "constant.builtin.boolean"),
+    "operator.comparison": ("keyword.operator.comparison", "operator"),
+    "operator.arithmetic": ("keyword.operator.arithmetic", "operator"),
+    "operator.logic": ("keyword.operator.logical", "operator"),
+    "operator.range": ("keyword.operator.range", "operator"),
+    "operator.assignment": ("keyword.operator.assignment", "operator"),
+    "bracket": ("punctuation.section", "punctuation.bracket"),
+    "punctuation": ("punctuation.separator", "punctuation.delimiter"),
+    "attribute.sign": ("punctuation.definition.annotation", "attribute"),
+    "attribute": ("entity.other.attribute-name", "attribute"),
+    "kind": ("storage.type.kind", "keyword.type", "keyword.storage.type"),
+    "name.structure": ("entity.name.type.structure", "type"),
+    "name.template": ("entity.name.type.template", "type"),
+    "name.function": ("entity.name.function.definition", "function"),
+    "name.definition": ("variable.other.definition", "variable"),
+    "name.parameter": ("variable.parameter.definition", "variable.parameter"),
+    "name.argument": ("variable.parameter.argument", "variable.parameter"),
+    "name.type": ("support.type", "type"),
+    "name.member": ("variable.other.property", "variable.member", "variable.other.member"),
+    "name.everywhere": ("variable.language", "variable.builtin"),
+    "name.constant": ("support.constant", "constant.builtin"),
+    "name.module": ("entity.name.namespace", "module", "namespace"),
+    "name": ("variable.other.readwrite", "variable"),
+    "call.shape": ("support.class.shape", "constructor"),
+    "call.constraint": ("support.function.constraint", "function.builtin"),
+    "call.function": ("support.function.library", "function.builtin"),
+    "call.member": ("entity.name.function.call.member", "function.method.call", "function.method"),
+    "call": ("entity.name.function.call", "function.call", "function"),
+    "number": ("constant.numeric", "number", "constant.numeric"),
+    "unit": ("keyword.other.unit", "type.builtin"),
+    "string": ("string.quoted", "string"),
+    "escape": ("constant.character.escape", "string.escape", "constant.character.escape"),
+    "unknown": ("invalid.illegal", "comment.error", "error"),
 }
-"""The scope of each class. In the grammar `.aidl` follows, in some after further words."""
+"""What TextMate and Neovim call each class, and Helix where it has another name than Neovim. The scope of
+TextMate goes on with `.aidl` in the grammar, in some after further words; Neovim's names are mostly those of
+tree-sitter's command line and of Zed.
+"""
+SCOPES = {kind: names[0] for kind, names in _NAMES.items() if names[0]}
+NEOVIM = {kind: names[1] for kind, names in _NAMES.items()}
+HELIX = {kind: names[-1] for kind, names in _NAMES.items()}
 
 
 def scope(written: str) -> str:

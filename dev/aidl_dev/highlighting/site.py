@@ -7,6 +7,7 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
+from aidl_dev import write_changed
 from aidl_dev.grammars import formats
 from aidl_dev.highlighting.codemirror import words
 from aidl_dev.highlighting.scopes import SCOPES
@@ -34,11 +35,7 @@ def texts(root: Path) -> dict[str, str]:
 
 def write(root: Path) -> None:
     """Updates the generated files. A file that is right already is not touched."""
-    for path, text in texts(root).items():
-        file = root / path
-        file.parent.mkdir(parents=True, exist_ok=True)
-        if not file.exists() or file.read_bytes() != text.encode():
-            file.write_bytes(text.encode())
+    write_changed(root, {path: text.encode() for path, text in texts(root).items()})
 
 
 def _json(data: object) -> str:
@@ -46,7 +43,6 @@ def _json(data: object) -> str:
 
 
 def _snippets() -> dict[str, object]:
-    """Returns snippets by their titles, in the form of VS Code."""
     return {
         snippet.title: {
             "prefix": snippet.prefix,

@@ -9,79 +9,11 @@ from __future__ import annotations
 import json
 from collections.abc import Iterable, Iterator, Mapping
 
+from aidl_dev.highlighting.scopes import HELIX, NEOVIM
 from aidl_lang.tools.highlighting.classes import called, fixed_classes
 from aidl_lang.tools.vocabulary import vocabulary
 
 FOLDER = "editors/tree-sitter-aidl/queries"
-
-NEOVIM: Mapping[str, str] = {
-    "comment.line": "comment",
-    "comment.documentation": "comment.documentation",
-    "comment.block": "comment",
-    "keyword.declaration": "keyword",
-    "keyword.demand": "keyword",
-    "keyword.modifier": "keyword.modifier",
-    "keyword.control": "keyword.conditional",
-    "keyword.control for": "keyword.repeat",
-    "keyword.import": "keyword.import",
-    "keyword.clause": "keyword",
-    "keyword.operator": "keyword.operator",
-    "constant.truth": "boolean",
-    "operator.comparison": "operator",
-    "operator.arithmetic": "operator",
-    "operator.logic": "operator",
-    "operator.range": "operator",
-    "operator.assignment": "operator",
-    "bracket": "punctuation.bracket",
-    "punctuation": "punctuation.delimiter",
-    "attribute.sign": "attribute",
-    "attribute": "attribute",
-    "kind": "keyword.type",
-    "name.structure": "type",
-    "name.template": "type",
-    "name.function": "function",
-    "name.definition": "variable",
-    "name.parameter": "variable.parameter",
-    "name.argument": "variable.parameter",
-    "name.type": "type",
-    "name.member": "variable.member",
-    "name.everywhere": "variable.builtin",
-    "name.constant": "constant.builtin",
-    "name.module": "module",
-    "name": "variable",
-    "call.shape": "constructor",
-    "call.constraint": "function.builtin",
-    "call.function": "function.builtin",
-    "call.member": "function.method.call",
-    "call": "function.call",
-    "number": "number",
-    "unit": "type.builtin",
-    "string": "string",
-    "escape": "string.escape",
-    "unknown": "comment.error",
-}
-"""Neovim's names of the classes, which tree-sitter's command line and Zed mostly share."""
-
-HELIX: Mapping[str, str] = {
-    **NEOVIM,
-    "comment.line": "comment.line",
-    "comment.documentation": "comment.line.documentation",
-    "comment.block": "comment.block",
-    "keyword.declaration": "keyword.storage.type",
-    "keyword.modifier": "keyword.storage.modifier",
-    "keyword.control": "keyword.control.conditional",
-    "keyword.control for": "keyword.control.repeat",
-    "keyword.import": "keyword.control.import",
-    "constant.truth": "constant.builtin.boolean",
-    "kind": "keyword.storage.type",
-    "name.member": "variable.other.member",
-    "name.module": "namespace",
-    "call.member": "function.method",
-    "call": "function",
-    "number": "constant.numeric",
-    "escape": "constant.character.escape",
-    "unknown": "error",
-}
 
 _PATTERNS = (
     ("comment.line", "(line_comment) $"),

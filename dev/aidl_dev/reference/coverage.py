@@ -135,11 +135,6 @@ def _cells(name: str, form: str) -> Iterator[Cell]:
             yield Cell(name, form, first, second, _judged(reports.get(f"all.cell{i}"), i, first, second))
 
 
-def program(cell: Cell) -> str:
-    """Returns the program of one cell by itself."""
-    return _whole([_program(cell.name, cell.form, cell.first, cell.second, 0)], [0])
-
-
 def _program(name: str, form: str, first: str, second: str, number: int) -> str:
     things = [KINDS[first].format(n="a", x=3, y=7)]
     if second:

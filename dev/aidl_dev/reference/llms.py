@@ -66,5 +66,4 @@ def headline(program: str) -> str:
 
 
 def _example(path: Path) -> str:
-    """Returns the name of an example and the first sentence of the comment it begins with."""
     return f"- [{path.stem}](examples/{path.name}): {headline(path.read_text('utf-8')).rstrip('.')}"

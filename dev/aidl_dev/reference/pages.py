@@ -110,7 +110,6 @@ def _index(reference: Reference) -> str:
 
 
 def _cell(text: str) -> str:
-    """Returns text that may stand in a table."""
     return text.replace("|", "\\|")
 
 

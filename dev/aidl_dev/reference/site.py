@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from aidl_dev import write_changed
 from aidl_dev.reference import coverage, gallery
 from aidl_dev.reference.guide import GENERATED, guide
 from aidl_dev.reference.llms import llms
@@ -44,10 +45,6 @@ def write(root: Path) -> None:
     """Updates the generated files. A file that is right already is not touched."""
     current = {path: text.encode() for path, text in texts(root).items()} | drawn(root)
     current[COVERAGE] = coverage.page().encode()
-    for path, data in current.items():
-        file = root / path
-        file.parent.mkdir(parents=True, exist_ok=True)
-        if not file.exists() or file.read_bytes() != data:
-            file.write_bytes(data)
+    write_changed(root, current)
     for stray in strays(root, set(current)):
         (root / stray).unlink()

@@ -134,7 +134,6 @@ def _loop(wire: Any) -> list[Point]:
 
 
 def _color(color: Any) -> str | None:
-    """Returns a colour as `#rrggbb` or by its name."""
     if color is None or isinstance(color, str):
         return color.lower() if color else None
     if hasattr(color, "toTuple"):

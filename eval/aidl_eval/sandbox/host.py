@@ -57,7 +57,6 @@ def _load(library: str) -> frozenset[str] | str:
 
 
 def _run(request: dict[str, Any], program: str, allowed: frozenset[str]) -> dict[str, Any]:
-    """Runs one program in a copy of this process, and returns its result."""
     with tempfile.TemporaryFile() as result:
         child = os.fork()
         if child == 0:
@@ -165,7 +164,6 @@ def _executed(library: str, program: str, allowed: frozenset[str]) -> dict[str, 
 
 
 def _told(error: BaseException) -> str:
-    """Returns the words for an error, with the line of the program."""
     if isinstance(error, SyntaxError) and error.filename == _FILE:
         line, said = error.lineno, error.msg
     else:

@@ -95,7 +95,6 @@ def _hook(event: str, arguments: Sequence[object]) -> None:
 
 
 def _filter() -> Callable[[], None]:
-    """Returns what makes the kernel refuse all system calls but those that computing takes."""
     mark, calls = _MACHINES[platform.machine()]
     numbers = list(calls.values())
     count = len(numbers)

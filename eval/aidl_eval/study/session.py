@@ -89,7 +89,6 @@ class Session:
         }
 
     def _given(self, rater: str) -> dict[str, Answer]:
-        """Returns the last answers of a rater by sheets."""
         return {answer.sheet: answer for answer in self.answers.all() if answer.rater == rater}
 
     def _picture(self, sheet: Sheet, language: str) -> str:

@@ -72,7 +72,6 @@ async def _answer(request: Request) -> Response:
 
 
 def _kept(session: Session, said: dict[str, Any]) -> dict[str, Any]:
-    """Keeps an answer, and returns the next sheet."""
     rater, number, sheet = _rater(said), _number(said), said.get("id")
     if number is None or not isinstance(sheet, str) or "ranking" not in said:
         raise RefusedError(_NO_QUESTION)

@@ -45,13 +45,14 @@ class Site:
         return self.client.post(f"/{TOKEN}/{what}", content=content, headers=given).status_code
 
 
-@pytest.fixture
-def store(tmp_path: Path) -> Store:
-    return results.write(tmp_path, states={("old key", "svg", 1): "none"})
+@pytest.fixture(scope="module")
+def store(tmp_path_factory: pytest.TempPathFactory) -> Store:
+    return results.write(tmp_path_factory.mktemp("out"), states={("old key", "svg", 1): "none"})
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def page(store: Store) -> Iterator[Site]:
+    """The page of a study that nobody's answer is kept of."""
     found = Site(store)
     yield found
     assert found.told == []
@@ -238,7 +239,8 @@ def test_hostile_answers_are_refused(page: Site, store: Store, change: dict[str,
     assert not (store.folder / "study.jsonl").exists()
 
 
-def test_what_goes_wrong_with_the_folder_is_not_told_to_raters(store: Store) -> None:
+def test_what_goes_wrong_with_the_folder_is_not_told_to_raters(tmp_path: Path) -> None:
+    store = results.write(tmp_path)
     page = Site(store)
     for picture in store.folder.rglob("*.neutral.png"):
         picture.write_bytes(b"\x89PNG\r\n\x1a\n")
@@ -248,10 +250,10 @@ def test_what_goes_wrong_with_the_folder_is_not_told_to_raters(store: Store) -> 
     assert "no picture" in page.told[0].diagnostic.message
 
 
-def test_an_answer_that_cannot_be_kept_is_told(store: Store) -> None:
-    page = Site(store)
+def test_an_answer_that_cannot_be_kept_is_told(tmp_path: Path) -> None:
+    page = Site(results.write(tmp_path))
     first = page.post("sheet", rater="north").json()
-    (store.folder / "study.jsonl").mkdir()
+    (tmp_path / "study.jsonl").mkdir()
     answer = page.post("answer", rater="north", number=0, id=first["id"], ranking=None)
     assert answer.status_code == 500
     assert [reason.diagnostic.code for reason in page.told] == ["E0988"]

@@ -44,7 +44,6 @@ class OpType(enum.Enum):
 
 
 def _made(make: Callable[..., Any], *given: object) -> Any:
-    """Returns what the kernel makes. Raises RuntimeError as `manifold3d` does."""
     try:
         return make(*given)
     except JsException as reason:
