@@ -20,6 +20,8 @@ Ints: TypeAlias = NDArray[np.intp]
 Mask: TypeAlias = NDArray[np.bool_]
 Bounds = tuple[float, float, float, float]
 
+SLACK = 1e-9
+"""Slack in a count of chords, so that rounding does not choose how many there are."""
 _SAMPLES = 32
 _SAMPLED = np.linspace(0, 1, _SAMPLES + 1)
 
@@ -483,6 +485,20 @@ def inward(curve: Piece, origin: Vec, rotation: float, mirrored: bool) -> Piece:
         return math.pi - (direction - angle) if mirrored else direction - angle
 
     return image(curve, at, turned=turned, sense=flip)
+
+
+def chord_count(curve: Piece, tolerance: float, share: float = 1.0, widest: float = math.tau / 16) -> int:
+    """Returns how many chords keep a tolerance along a share of a curve: at least two, so that a curve does
+    not fall flat, and such of which none goes through more than the `widest` angle.
+    """
+    if isinstance(curve, Line):
+        return 1
+    if isinstance(curve, Bezier):
+        bend = max(math.hypot(*curve.second_derivative(t)) for t in (0.0, 1.0))
+        return max(3, math.ceil(share * math.sqrt(bend / (8 * tolerance)) - SLACK))
+    _, rx, ry, *_, sweep = curve.frame
+    step = min(widest, 4 * math.asin(math.sqrt(min(1.0, tolerance / (2 * max(rx, ry))))))
+    return max(2, math.ceil(abs(sweep) * share / step - SLACK))
 
 
 def turn_between(a: Vec, b: Vec) -> float:
