@@ -17,7 +17,7 @@ import numpy as np
 
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
-from aidl_lang.geometry.curves import Arc, Circle, Floats, Line, Piece, Vec, chord_count, turn_between
+from aidl_lang.geometry.curves import Arc, Circle, Floats, Line, Piece, Vec, turn_between
 from aidl_lang.geometry.intersect import from_sides
 from aidl_lang.geometry.region import Face, Loop, Region, length
 
@@ -194,7 +194,7 @@ class _Fit:
         self._tolerance = (1 - _GRAIN) * tolerance
         spots, self._at = [], list[tuple[Piece, float]]()
         for piece in pieces:
-            count = chord_count(piece, _GRAIN * tolerance)
+            count = piece.chords(_GRAIN * tolerance)
             count = count if isinstance(piece, Line) else max(_FEWEST, min(_MOST, count))
             spots.append(piece.points(np.arange(count) / count))
             self._at += [(piece, k / count) for k in range(count)]

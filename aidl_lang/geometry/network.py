@@ -22,7 +22,6 @@ from aidl_lang.geometry.curves import (
     Mask,
     Piece,
     Vec,
-    chord_count,
     larger_side,
     union_bounds,
 )
@@ -344,7 +343,7 @@ class Network:
         edges, curves = self.edges, self.curves
         chords = [self.size * (FINE_CHORD if e.curve in self._fine else CHORD) for e in edges]
         counts = [
-            min(chord_count(curves[e.curve], chord, e.t1 - e.t0, math.tau / 32), _MOST_CHORDS)
+            min(curves[e.curve].chords(chord, e.t1 - e.t0, math.tau / 32), _MOST_CHORDS)
             for e, chord in zip(edges, chords, strict=True)
         ]
         inner = self._sizes = np.array(counts, dtype=np.intp) - 1

@@ -12,18 +12,7 @@ import numpy as np
 from aidl_lang.building.curves import gauss
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
-from aidl_lang.geometry.curves import (
-    Arc,
-    Bezier,
-    Bounds,
-    Circle,
-    Floats,
-    Line,
-    Piece,
-    Vec,
-    chord_count,
-    union_bounds,
-)
+from aidl_lang.geometry.curves import Arc, Bezier, Bounds, Circle, Floats, Line, Piece, Vec, union_bounds
 
 
 @record(slots=True)
@@ -305,7 +294,7 @@ def polygon_area(polygon: Polygon) -> float:
 
 
 def _from_start(piece: Piece, tolerance: float) -> Polygon:
-    count = chord_count(piece, tolerance)
+    count = piece.chords(tolerance)
     found = piece.points(np.arange(count) / count)
     found[0] = piece.ends[0]
     return found
