@@ -95,7 +95,7 @@ def ours(compiled: Any, spacing: float, seconds: float | None) -> Result:
     from aidl_lang.geometry.sheets import laid_out
 
     start = time.perf_counter()
-    layout = laid_out(compiled.model.root, compiled.drawing, SHEET, spacing, seconds)
+    layout = laid_out(compiled.drawing, SHEET, spacing, seconds)
     taken = time.perf_counter() - start
     boxes = [body.box for body in layout.sheets[-1].bodies]
     return Result(len(layout.sheets), lost(max(b[2] for b in boxes), max(b[3] for b in boxes)), taken)
@@ -104,7 +104,7 @@ def ours(compiled: Any, spacing: float, seconds: float | None) -> Result:
 def boxes(compiled: Any) -> list[tuple[float, float]]:
     from aidl_lang.geometry.parts import parts_of
 
-    found, _ = parts_of(compiled.model.root, compiled.drawing)
+    found, _ = parts_of(compiled.drawing)
     return [part.size for part in found for _ in range(part.body.style.quantity)]
 
 

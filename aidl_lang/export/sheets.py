@@ -42,7 +42,7 @@ def jobs_of_parts(job: Job) -> Iterator[tuple[Item, Job]]:
         hint = "only a `solid` is cut; a `drawing` is engraved"
         raise ExportError("E0926", "there is no part to write", hint)
     alone = replace(options, cut=options.for_cutter, sheet=None, nest=None, kerf=0.0, show=frozenset())
-    found = {part.body.path: part for part in parts_of(job.model.root, job.drawing)[0]}
+    found = {part.body.path: part for part in parts_of(job.drawing)[0]}
     for item in items:
         part = found[item.part.body.path]
         part = part.moved(Motion(0.0, -part.box[0], -part.box[1]))
@@ -81,7 +81,7 @@ class CutList:
 
 
 def cut_list(job: Job) -> CutList:
-    found, _ = parts_of(job.model.root, job.drawing)
+    found, _ = parts_of(job.drawing)
     root = f"{job.model.root.path}."
     said = job.options.thickness
     members = Counter(_stem(body.path.removeprefix(root)) for body in job.drawing.bodies)
@@ -141,7 +141,7 @@ def laid_on_sheets(job: Job, sheet: Size, spacing: float) -> tuple[list[Job], li
     if job.options.nest is not None:
         require("spyrrow", "--nest", "nest")
     try:
-        layout = laid_out(job.model.root, job.drawing, sheet, spacing, job.options.nest)
+        layout = laid_out(job.drawing, sheet, spacing, job.options.nest)
     except NestingError as reason:
         message = f"the parts could not be packed by their outlines: {reason}"
         hint = "leave `--nest` out: they are packed by their boxes then"

@@ -11,14 +11,17 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from itertools import pairwise
+from typing import TypeVar
 
 import numpy as np
 
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
-from aidl_lang.geometry.curves import Arc, Bezier, Circle, Floats, Line, Piece, Vec, turn_between
+from aidl_lang.geometry.curves import Arc, Circle, Floats, Line, Piece, Vec, turn_between
 from aidl_lang.geometry.intersect import from_sides
 from aidl_lang.geometry.region import Face, Loop, Region, length
+
+T = TypeVar("T")
 
 SHORTEST = 3.0
 """Pieces shorter than so many tolerances are not left where a machine is to follow."""
@@ -101,34 +104,37 @@ class _Outline:
         """Returns the pieces in stretches: each by itself that can stay, the others as long as they run on
         smoothly. A closed outline begins where one of them does.
         """
-        pieces, count = self._whole, len(self._whole)
+        pieces = self._whole
         exact = [isinstance(p, Line | Arc) and length(p) >= self._joined for p in pieces]
         runs_on = [
             not (exact[k - 1] or exact[k])
             and abs(turn_between(pieces[k - 1].direction(1.0), pieces[k].direction(0.0))) < _SMOOTH
-            for k in range(count)
+            for k in range(len(pieces))
         ]
-        first = runs_on.index(False) if self._closed and False in runs_on else 0
-        found: list[_Stretch] = []
-        for number in range(first, first + count):
-            k = number % count
-            if found and number > first and runs_on[k]:
-                found[-1] = _Stretch((*found[-1].pieces, pieces[k]))
-            else:
-                found.append(_Stretch((pieces[k],)))
-        return found
+        return [_Stretch(group) for group in self._grouped(pieces, runs_on, runs_on)]
 
     def _with_few_short(self, stretches: Sequence[_Stretch]) -> list[_Stretch]:
         """Returns the stretches with those that are too short and follow each other made one."""
         is_short = [s.length < self._shortest for s in stretches]
-        first = is_short.index(False) if self._closed and False in is_short else 0
-        found: list[_Stretch] = []
-        for number in range(first, first + len(stretches)):
-            k = number % len(stretches)
-            if found and is_short[k] and is_short[k - 1]:
-                found[-1] = _Stretch((*found[-1].pieces, *stretches[k].pieces), has_corners=True)
+        follows = [is_short[k - 1] and is_short[k] for k in range(len(stretches))]
+        return [
+            group[0]
+            if len(group) == 1
+            else _Stretch(tuple(p for s in group for p in s.pieces), has_corners=True)
+            for group in self._grouped(stretches, follows, is_short)
+        ]
+
+    def _grouped(
+        self, things: Sequence[T], follows: Sequence[bool], is_inner: Sequence[bool]
+    ) -> list[tuple[T, ...]]:
+        """Returns things with those that follow the one before; a ring begins at none that is inner."""
+        first = is_inner.index(False) if self._closed and False in is_inner else 0
+        found: list[tuple[T, ...]] = []
+        for k in (*range(first, len(things)), *range(first)):
+            if found and follows[k]:
+                found[-1] = (*found[-1], things[k])
             else:
-                found.append(stretches[k])
+                found.append((things[k],))
         return found
 
     def _places(self, stretches: Sequence[_Stretch]) -> list[tuple[Vec, Vec]]:
@@ -188,7 +194,8 @@ class _Fit:
         self._tolerance = (1 - _GRAIN) * tolerance
         spots, self._at = [], list[tuple[Piece, float]]()
         for piece in pieces:
-            count = _samples(piece, tolerance)
+            count = piece.chords(_GRAIN * tolerance)
+            count = count if isinstance(piece, Line) else max(_FEWEST, min(_MOST, count))
             spots.append(piece.points(np.arange(count) / count))
             self._at += [(piece, k / count) for k in range(count)]
         self._at.append((pieces[-1], 1.0))
@@ -246,20 +253,6 @@ class _Fit:
         probes = np.concatenate([arc.points(_PROBES) for arc in arcs])
         gaps = from_sides(probes[:, None, :] - spots[:-1], np.diff(spots, axis=0)).min(axis=1)
         return bool(gaps.max() <= self._tolerance)
-
-
-def _samples(piece: Piece, tolerance: float) -> int:
-    """Returns the number of chords that depart from a piece by no more than a small part of a tolerance."""
-    if isinstance(piece, Line):
-        return 1
-    if isinstance(piece, Bezier):
-        p = np.array((piece.p0, piece.p1, piece.p2, piece.p3))
-        bend = float(np.hypot(*np.diff(p, n=2, axis=0).T).max())
-        count = math.sqrt(0.75 * bend / (_GRAIN * tolerance))
-    else:
-        _, rx, ry, *_, sweep = piece.frame
-        count = abs(sweep) * math.sqrt(max(rx, ry) / (8 * _GRAIN * tolerance))
-    return max(_FEWEST, min(_MOST, math.ceil(count)))
 
 
 def _pair(start: Vec, leaving: Vec, end: Vec, arriving: Vec) -> list[Piece] | None:

@@ -4,19 +4,22 @@ from __future__ import annotations
 
 import math
 from collections import defaultdict
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import field, replace
 from itertools import count
+from typing import TypeVar
 
 from aidl_lang.common.diagnostics import Diagnostic, Label
-from aidl_lang.common.prose import named
+from aidl_lang.common.prose import counted, named
 from aidl_lang.common.records import record
-from aidl_lang.geometry.curves import Arc, Bezier, Line, Piece, Vec, larger_side
-from aidl_lang.geometry.faces import OwnFace, OwnFaces, Shape, own_faces, union_of
+from aidl_lang.geometry.curves import Arc, Bezier, Line, Piece, Vec, in_runs, larger_side
+from aidl_lang.geometry.faces import WINDING, OwnFace, Shape, own_faces, union_of
 from aidl_lang.geometry.intersect import near_pairs
-from aidl_lang.geometry.network import Network
+from aidl_lang.geometry.network import Network, with_finer_chords
 from aidl_lang.geometry.sections import Section, Traced, trace_all, union
-from aidl_lang.geometry.solved import SolvedGeometry, SolvedStructure, as_geometry, at
+from aidl_lang.geometry.solved import SolvedGeometry, SolvedStructure, at, edges_of
+
+T = TypeVar("T")
 
 # --- What structures are clipped to, in the network of curves: solids and holes lie inside of it.
 
@@ -32,22 +35,17 @@ def clip_shapes(root: SolvedStructure, first: int) -> tuple[dict[str, Shape], li
     for s in root.walk():
         if s.inside is not None:
             whole = SolvedGeometry("clip", f"{s.path}.clip", "clip", {}, None, (), False, s.span)
-            pieces = s.inside.pieces
-            leaves = (as_geometry(f"edges[{k}]", whole, piece) for k, piece in enumerate(pieces))
+            leaves = edges_of(whole, s.inside.pieces)
             shapes[s.path] = Shape(whole, tuple(zip(leaves, numbers, strict=False)))
-            curves += pieces
+            curves += s.inside.pieces
     return shapes, curves
 
 
-def clip_sections(network: Network, root: SolvedStructure, shapes: Clips) -> dict[str, Section]:
-    """Returns what each structure that is clipped, or lies in one that is, may lie in."""
-    return dict(_clip_sections(network, root, shapes, None)) if shapes else {}
-
-
-def _clip_sections(
-    network: Network, s: SolvedStructure, shapes: Clips, around: Section | None
+def clip_sections(
+    network: Network, s: SolvedStructure, shapes: Clips, around: Section | None = None
 ) -> Iterator[tuple[str, Section]]:
-    """Yields the sections of a structure and of what lies in it, which is clipped to `around`, too.
+    """Yields the paths of a structure and of those in it that are clipped, or lie in one that is (`around`),
+    and what each may lie in.
 
     No closure, which would keep itself and what it holds: Manifold tells of sections left at the end.
     """
@@ -56,28 +54,23 @@ def _clip_sections(
     if around is not None:
         yield s.path, around
     for child in s.structures:
-        yield from _clip_sections(network, child, shapes, around)
+        yield from clip_sections(network, child, shapes, around)
 
 
 def empty_clips(root: SolvedStructure, drawn: Collection[str]) -> Iterator[Diagnostic]:
     """Yields errors about structures of which nothing is left inside; `drawn`: paths of what is there."""
-    if root.inside is not None and not any(s.path in drawn for s in root.walk()):
-        if any(True for s in root.walk() for g in s.geometry for _ in g.curves()):
-            yield _nothing_left(root)
-        return
-    for child in root.structures:
-        yield from empty_clips(child, drawn)
-
-
-def _nothing_left(s: SolvedStructure) -> Diagnostic:
-    of = f"the material of `{s.ground}`" if s.ground is not None else named([g.name for g in s.clip])
-    return Diagnostic(
-        "E0339",
-        f"nothing of `{s.path}` lies inside {of}, to which it is clipped",
-        s.span,
-        "nothing is drawn of this",
-        hints=("place the two so that they overlap, as they shall in the drawing",),
-    )
+    if root.inside is None or any(s.path in drawn for s in root.walk()):
+        for child in root.structures:
+            yield from empty_clips(child, drawn)
+    elif any(True for s in root.walk() for g in s.geometry for _ in g.curves()):
+        of = named([g.name for g in root.clip]) if root.ground is None else f"the material of `{root.ground}`"
+        yield Diagnostic(
+            "E0339",
+            f"nothing of `{root.path}` lies inside {of}, to which it is clipped",
+            root.span,
+            "nothing is drawn of this",
+            hints=("place the two so that they overlap, as they shall in the drawing",),
+        )
 
 
 # --- Builds the bodies of the whole, bottom-up, from the faces of each structure.
@@ -127,15 +120,6 @@ class Cut:
 
 
 @record()
-class InnerLoop:
-    """A face that adds nothing, because other faces of its structure cover it."""
-
-    structure: SolvedStructure
-    face: OwnFace
-    around: tuple[SolvedGeometry, ...]
-
-
-@record()
 class LooseCurves:
     """Curves of a structure that bound no face, with their numbers in the network.
 
@@ -148,25 +132,16 @@ class LooseCurves:
 
 
 @record()
-class CoveredHoles:
-    """Holes of a face that other faces of its structure cover."""
+class Covered:
+    """A face that adds nothing, because other faces of its structure cover it, or so many `holes` of one."""
 
     structure: SolvedStructure
     face: OwnFace
-    count: int
-    covers: tuple[SolvedGeometry, ...]
+    by: tuple[SolvedGeometry, ...]
+    holes: int = 0
 
 
-@record()
-class CrossedOutline:
-    """An imported outline that crosses itself."""
-
-    structure: SolvedStructure
-    outline: SolvedGeometry
-    places: tuple[Vec, ...]
-
-
-Finding = InnerLoop | LooseCurves | CoveredHoles | CrossedOutline | Diagnostic
+Finding = Covered | LooseCurves | Diagnostic
 
 
 @record(frozen=False)
@@ -213,26 +188,22 @@ class Bodies:
         shapes = self.shapes.get(structure.path, ())
         if not shapes:
             return None
-        own: OwnFaces = own_faces(self.network, shapes)
+        own = own_faces(self.network, shapes)
         if own.loose:
             numbers = tuple(number for shape in shapes for number in shape.numbers)
             self.findings.append(LooseCurves(structure, tuple(own.loose), numbers))
-        self.findings += [CrossedOutline(structure, outline, places) for outline, places in own.crossed]
+        self.findings += [crossed_note(structure, outline, places) for outline, places in own.crossed]
         if not own.faces:
             return None
         self._find_inner_loops(structure, own.faces)
-        faces = self._clipped(structure, own.faces)
+        faces = own.faces
+        if (clip := self.clips.get(structure.path)) is not None:
+            inner = [replace(face, section=face.section & clip) for face in faces]
+            faces = [face for face in inner if not face.section.is_nothing]
         if not faces:
             return None
         self.faces[structure.path] = faces
         return union_of(faces)
-
-    def _clipped(self, structure: SolvedStructure, faces: list[OwnFace]) -> list[OwnFace]:
-        """Returns the faces of a structure as far as they lie in what it is clipped to."""
-        if (clip := self.clips.get(structure.path)) is None:
-            return faces
-        inner = [replace(face, section=face.section & clip) for face in faces]
-        return [face for face in inner if not face.section.is_nothing]
 
     def inner_pieces(self, structure: SolvedStructure, number: int) -> tuple[Piece, ...]:
         """Returns a curve of a structure as far as it lies in what the structure is clipped to."""
@@ -259,7 +230,7 @@ class Bodies:
             if union_of(near).covers(face.section):
                 dropped.add(number)
                 names = tuple(g for f in around or near for g in f.geometries)
-                self.findings.append(InnerLoop(structure, face, names))
+                self.findings.append(Covered(structure, face, names))
         for number, face in enumerate(faces):
             if number not in dropped:
                 others = [faces[i] for i in sorted(beside[number]) if i not in dropped]
@@ -277,7 +248,7 @@ class Bodies:
                 alone = next((f for f in near if f.section.covers(hole)), None)
                 by.update((g.path, g) for f in ([alone] if alone else near) for g in f.geometries)
         if covered:
-            self.findings.append(CoveredHoles(structure, face, covered, tuple(by.values())))
+            self.findings.append(Covered(structure, face, tuple(by.values()), covered))
 
     def _united(
         self, solid: SolvedStructure, own: Section | None, children: list[Mass], cuts: list[Cut]
@@ -345,6 +316,29 @@ class Bodies:
             else:
                 kept.append(void)
         return kept
+
+
+def crossed_note(s: SolvedStructure, outline: SolvedGeometry, places: Sequence[Vec]) -> Diagnostic:
+    """Returns the warning on an imported outline that crosses itself."""
+    first, *more = sorted(places)
+    further = f" and in {counted(len(more), 'more place')}" if more else ""
+    rule = "a winding that is not 0" if outline.type == WINDING else "every second area"
+    return Diagnostic(
+        "W0753",
+        f"`{label(outline.path)}`, imported into {s.kind} `{s.path}`, crosses itself at {at(first)}{further}",
+        outline.span or s.span,
+        f"filled is {rule}",
+        hints=(AGAIN, "crossing lines come out of a cutter as separate pieces"),
+        points=(first, *more[:9]),
+    )
+
+
+def label(path: str) -> str:
+    """Returns what a shape of a file is called there, by its path."""
+    return path.rpartition(".")[2].rpartition("[")[0]
+
+
+AGAIN = "mend it in the program that drew it"
 
 
 def _around(material: Section, holes: Sequence[Section], taken: Section) -> Iterator[Section]:
@@ -463,17 +457,12 @@ def inner_seams(
             yield path, tuple(_merged(network, sorted(found)))
 
 
-def _merged(network: Network, edges: list[int]) -> Iterator[Piece]:
+def _merged(network: Network, numbers: Iterable[int]) -> Iterator[Piece]:
     """Yields edges that follow each other on one curve as one piece."""
-    start = None
-    for number, after in zip(edges, [*edges[1:], None], strict=True):
-        edge, start = network.edges[number], network.edges[number] if start is None else start
-        following = network.edges[after] if after is not None else None
-        if following and following.curve == edge.curve and following.t0 == edge.t1:
-            continue
-        curve, nodes = network.curves[edge.curve], network.nodes
-        yield curve.part(start.t0, edge.t1, nodes[start.start], nodes[edge.end])
-        start = None
+    edges = (network.edges[number] for number in numbers)
+    for run in in_runs(edges, lambda a, b: a.curve == b.curve and a.t1 == b.t0):
+        first, last, nodes = run[0], run[-1], network.nodes
+        yield network.curves[first.curve].part(first.t0, last.t1, nodes[first.start], nodes[last.end])
 
 
 # --- Closes outlines with small gaps: open ends of curves that lie close together become one, and each gap is
@@ -514,7 +503,29 @@ class Gap:
         return math.dist(self.moved.at, self.kept.at)
 
 
-def open_gaps(
+def with_gaps_closed(
+    network: Network,
+    root: SolvedStructure,
+    shapes: Mapping[str, Sequence[Shape]],
+    arranged: Callable[[Network], T],
+    findings_of: Callable[[T], Sequence[Finding]],
+) -> tuple[Network, list[Gap], T]:
+    """Returns the network with small gaps between curves closed, these gaps, and what is arranged then."""
+    found = with_finer_chords(network, arranged)
+    gaps = _open_gaps(network, findings_of(found), shapes)
+    while gaps:
+        joined = Network(_without_gaps(network.curves, gaps), box=network.box)
+        then = with_finer_chords(joined, arranged)
+        kept = list(_effective(gaps, findings_of(then)))
+        if len(kept) == len(gaps):
+            network, found = joined, then
+            break
+        gaps = kept
+    welded = _welded_gaps(network, root.walk(), shapes)
+    return network, [*gaps, *_effective(welded, findings_of(found))], found
+
+
+def _open_gaps(
     network: Network, findings: Iterable[Finding], shapes: Mapping[str, Sequence[Shape]]
 ) -> list[Gap]:
     """Returns the gaps beside curves of solids and holes that enclose nothing, narrow enough to be closed."""
@@ -540,7 +551,7 @@ def open_gaps(
     return gaps
 
 
-def without_gaps(curves: Sequence[Piece], gaps: Iterable[Gap]) -> list[Piece]:
+def _without_gaps(curves: Sequence[Piece], gaps: Iterable[Gap]) -> list[Piece]:
     """Returns the curves with the moved ends where they are to be."""
     result = list(curves)
     for gap in gaps:
@@ -549,20 +560,16 @@ def without_gaps(curves: Sequence[Piece], gaps: Iterable[Gap]) -> list[Piece]:
     return result
 
 
-def effective(gaps: Iterable[Gap], findings: Iterable[Finding]) -> list[Gap]:
-    """Returns the gaps whose curves both enclose something."""
+def _effective(gaps: Iterable[Gap], findings: Iterable[Finding]) -> Iterator[Gap]:
+    """Yields the gaps whose curves both enclose something."""
     loose = {number for f in findings if isinstance(f, LooseCurves) for _, number in f.curves}
-    return [gap for gap in gaps if not loose & {gap.moved.number, gap.kept.number}]
+    return (gap for gap in gaps if not loose & {gap.moved.number, gap.kept.number})
 
 
-def welded_gaps(
-    network: Network,
-    findings: Iterable[Finding],
-    structures: Iterable[SolvedStructure],
-    shapes: Mapping[str, Sequence[Shape]],
+def _welded_gaps(
+    network: Network, structures: Iterable[SolvedStructure], shapes: Mapping[str, Sequence[Shape]]
 ) -> Iterator[Gap]:
     """Yields gaps between ends, in outlines of single curves, that became one node without quite meeting."""
-    gaps = []
     for structure in structures:
         if structure.kind not in ("solid", "hole"):
             continue
@@ -575,8 +582,7 @@ def welded_gaps(
             first = here[0]
             last = max(here, key=lambda end: math.dist(end.at, first.at))
             if math.dist(last.at, first.at) > ROUNDING * network.size:
-                gaps.append(Gap(structure, last, first))
-    yield from effective(gaps, findings)
+                yield Gap(structure, last, first)
 
 
 def ends_of(network: Network, geometry: SolvedGeometry, number: int) -> Iterator[End]:

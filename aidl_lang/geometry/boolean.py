@@ -14,7 +14,7 @@ import numpy as np
 from aidl_lang.common.records import record
 from aidl_lang.common.running import Later, checkpoint
 from aidl_lang.geometry.curves import Arc, Bezier, Circle, Floats, Line, Piece, Vec, larger_side, union_bounds
-from aidl_lang.geometry.intersect import Crossing, Table, all_intersections, inside, meet, near_rows
+from aidl_lang.geometry.intersect import Crossing, Table, all_intersections, inside, near_rows
 from aidl_lang.geometry.network import CHORD, RELATIVE_TOLERANCE, Hulls, Network
 from aidl_lang.geometry.region import Face, Loop, Region
 from aidl_lang.geometry.sections import Section, arranged, closed_loop, faces_of, filled, trace, union
@@ -170,35 +170,10 @@ def common(a: Region, *others: Region) -> Region:
 
 def clearance(a: Region, b: Region) -> float:
     """Returns the least distance of two regions, mm; 0 where they meet, infinite if one is empty."""
-    if not _lie_apart(a, b) and common(a, b).area > 0:
+    if len(near_rows([a.box, b.box], 0.0)) and common(a, b).area > 0:
         return 0.0
     closest = region_distance(a, b)
     return closest[0] if closest else float("inf")
-
-
-def _lie_apart(a: Region, b: Region) -> bool:
-    """Tells whether no outlines of two regions meet, and none lies in the box of the other."""
-    curves, count = [*a.pieces, *b.pieces], len(a.pieces)
-    boxes = np.concatenate((a.boxes, b.boxes))
-    tolerance = RELATIVE_TOLERANCE * float(np.ptp(boxes.reshape(-1, 2), axis=0).max(initial=0.0))
-    near = near_rows(boxes, tolerance)
-    near = near[(near[:, 0] < count) & (near[:, 1] >= count)]
-    open_pairs = Hulls(Table(curves), tolerance).meeting(near)
-    if any(meet(curves[i], curves[j], tolerance) for i, j in open_pairs.tolist()):
-        return False
-    return not (_may_hold(a, b) or _may_hold(b, a))
-
-
-def _may_hold(region: Region, other: Region) -> bool:
-    """Tells whether an outline of the other lies in the box of a region."""
-    if not (region and other):
-        return False
-    begins = list(accumulate([0, *(len(loop.pieces) for loop in other.loops[:-1])]))
-    low, high = np.minimum.reduceat(other.boxes, begins), np.maximum.reduceat(other.boxes, begins)
-    inside = (low[:, :2] >= region.boxes[:, :2].min(axis=0)) & (
-        high[:, 2:] <= region.boxes[:, 2:].max(axis=0)
-    )
-    return bool(inside.all(axis=1).any())
 
 
 def _combined(regions: Sequence[Region], operation: Callable[..., Section]) -> Region:

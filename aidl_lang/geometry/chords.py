@@ -13,6 +13,7 @@ from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
 from aidl_lang.geometry.curves import Arc, Circle, Ellipse, Floats, Ints, Line, Mask, Piece, Vec
 from aidl_lang.geometry.intersect import windows
+from aidl_lang.geometry.network import RELATIVE_TOLERANCE
 from aidl_lang.geometry.region import Loop, Region
 
 # --- The outline of a region as straight and round elements in arrays, to be searched for chords (`walls`).
@@ -81,6 +82,8 @@ class Skeleton:
         self.free = is_free[self.piece] & (self.first < 2)
         self.error = max((_error(p) for p in self.pieces), default=0.0)
         self.boxes = self._boxes()
+        self.size = math.dist(self.boxes[:, :2].min(axis=0), self.boxes[:, 2:].max(axis=0))
+        self.tolerance = RELATIVE_TOLERANCE * self.size
         left = np.arctan2(self.way[:, 0], -self.way[:, 1])
         self.normal = np.concatenate((left, self.middle + np.where(self.side > 0, math.pi, 0)))
         self.spread = np.concatenate((np.zeros(self.straight), self.half))

@@ -7,19 +7,27 @@ import sys
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import fields, replace
 from operator import attrgetter
-from typing import Any, ClassVar, Self, TypeAlias, get_args
+from typing import TYPE_CHECKING, Any, ClassVar, Self, TypeAlias, TypeVar, get_args
 
 import numpy as np
 from numpy.typing import NDArray
 
 from aidl_lang.common.records import record
 
+if TYPE_CHECKING:
+    from aidl_lang.common.drawings import Stroke
+
+T = TypeVar("T")
 Vec: TypeAlias = tuple[float, float]
 Floats: TypeAlias = NDArray[np.float64]
 Ints: TypeAlias = NDArray[np.intp]
 Mask: TypeAlias = NDArray[np.bool_]
 Bounds = tuple[float, float, float, float]
 
+_PARALLEL = 1e-9
+"""Sine of the angle of two lines up to which they are parallel."""
+SLACK = 1e-9
+"""Slack in a count of chords, so that rounding does not choose how many there are."""
 _SAMPLES = 32
 _SAMPLED = np.linspace(0, 1, _SAMPLES + 1)
 
@@ -83,6 +91,12 @@ class _Curve:
     def reversed(self) -> Self:
         """Returns the curve run through the other way round; closed curves keep their form."""
         return self
+
+    def chords(self, tolerance: float, share: float = 1.0, widest: float = math.tau / 16) -> int:
+        """Returns how many chords keep a tolerance along a share of a curve: at least two, so that a curve
+        does not fall flat, and such of which none goes through more than the `widest` angle.
+        """
+        raise NotImplementedError
 
     def nearest(self, p: Vec) -> float:
         """Returns the parameter of the point of the curve that is nearest to p."""
@@ -160,6 +174,9 @@ class Line(_Curve):
     def derivative(self, t: float) -> Vec:
         return self.way
 
+    def chords(self, tolerance: float, share: float = 1.0, widest: float = math.tau / 16) -> int:
+        return 1
+
     def reversed(self) -> Line:
         return Line(self.end, self.start)
 
@@ -236,6 +253,10 @@ class Bezier(_Curve):
         q = -(b + math.copysign(math.sqrt(root), b)) / 2
         return [q / a] + ([c / q] if q else [])
 
+    def chords(self, tolerance: float, share: float = 1.0, widest: float = math.tau / 16) -> int:
+        bend = max(math.hypot(*self.second_derivative(t)) for t in (0.0, 1.0))
+        return max(3, math.ceil(share * math.sqrt(bend / (8 * tolerance)) - SLACK))
+
     def reversed(self) -> Bezier:
         return Bezier(self.p3, self.p2, self.p1, self.p0)
 
@@ -297,16 +318,14 @@ class _Round(_Curve):
         turn = math.copysign(math.tau, sweep)
         return [((a - first) % turn) / sweep for a in (across, across + math.pi, along, along + math.pi)]
 
+    def chords(self, tolerance: float, share: float = 1.0, widest: float = math.tau / 16) -> int:
+        _, rx, ry, *_, sweep = self.frame
+        step = min(widest, 4 * math.asin(math.sqrt(min(1.0, tolerance / (2 * max(rx, ry))))))
+        return max(2, math.ceil(abs(sweep) * share / step - SLACK))
+
 
 class _Circular(_Round):
-    """An arc or a circle."""
-
     __slots__ = ()
-
-    def derivative(self, t: float) -> Vec:
-        _, radius, _, _, first, sweep = self.frame
-        u = first + t * sweep
-        return -radius * sweep * math.sin(u), radius * sweep * math.cos(u)
 
     def nearest(self, p: Vec) -> float:
         (x, y), *_, first, sweep = self.frame
@@ -372,8 +391,6 @@ class Circle(_Circular):
 
 
 class _Elliptic(_Round):
-    """An ellipse, or a piece of one."""
-
     __slots__ = ()
 
     def part(self, t0: float, t1: float, start: Vec, end: Vec) -> Self | EllipseArc:
@@ -485,9 +502,62 @@ def inward(curve: Piece, origin: Vec, rotation: float, mirrored: bool) -> Piece:
     return image(curve, at, turned=turned, sense=flip)
 
 
+def in_runs(things: Iterable[T], follows: Callable[[T, T], bool]) -> list[list[T]]:
+    """Returns things in runs, in which each follows the one before it."""
+    runs: list[list[T]] = []
+    for thing in things:
+        if runs and follows(runs[-1][-1], thing):
+            runs[-1].append(thing)
+        else:
+            runs.append([thing])
+    return runs
+
+
 def turn_between(a: Vec, b: Vec) -> float:
     """Returns the angle from one direction to another in radians, positive counter-clockwise."""
     return math.atan2(a[0] * b[1] - a[1] * b[0], a[0] * b[0] + a[1] * b[1])
+
+
+def meeting(a: Line, b: Line) -> Vec | None:
+    """Returns the crossing of two endless lines; None if they are parallel."""
+    (ux, uy), (vx, vy) = a.way, b.way
+    cross = ux * vy - uy * vx
+    if abs(cross) <= _PARALLEL * math.hypot(ux, uy) * math.hypot(vx, vy):
+        return None
+    t = ((b.start[0] - a.start[0]) * vy - (b.start[1] - a.start[1]) * vx) / cross
+    return a.start[0] + t * ux, a.start[1] + t * uy
+
+
+# --- Strokes of drawings of other programs.
+
+_ROUND = 1e-8
+"""Difference of the radii of an ellipse, relative to them, below which it is a circle."""
+_FLAT = 1e-12
+
+
+def curve_of(stroke: Stroke) -> Piece:
+    """Returns the exact curve of a stroke."""
+    if isinstance(stroke, tuple):
+        return Line(*stroke) if len(stroke) == 2 else Bezier(*stroke)
+    (ux, uy), (vx, vy) = stroke.u, stroke.v
+    # Conjugate half-diameters become those of the axes by a shift of the parameter.
+    shift = 0.5 * math.atan2(2 * (ux * vx + uy * vy), ux * ux + uy * uy - vx * vx - vy * vy)
+    c, s = math.cos(shift), math.sin(shift)
+    long, short = (ux * c + vx * s, uy * c + vy * s), (vx * c - ux * s, vy * c - uy * s)
+    sense = math.copysign(1.0, long[0] * short[1] - long[1] * short[0])
+    rx, ry = math.hypot(*long), math.hypot(*short)
+    if ry <= _FLAT * rx:
+        return Line(stroke.start, stroke.end)
+    angle, sweep = math.atan2(long[1], long[0]), sense * stroke.sweep
+    if rx - ry <= _ROUND * rx:
+        radius = (rx + ry) / 2
+        if stroke.is_whole:
+            return Circle(stroke.center, radius)
+        return Arc(stroke.center, radius, stroke.start, stroke.end, sweep)
+    if stroke.is_whole:
+        return Ellipse(stroke.center, rx, ry, angle)
+    first = sense * (stroke.first - shift)
+    return EllipseArc(stroke.center, rx, ry, angle, stroke.start, stroke.end, first, sweep)
 
 
 # --- Boxes.

@@ -17,26 +17,21 @@ from aidl_lang.geometry import legibility
 from aidl_lang.geometry.bodies import (
     Bodies,
     Clips,
-    CoveredHoles,
-    Gap,
-    InnerLoop,
+    Covered,
     LooseCurves,
     Mass,
     clip_sections,
     clip_shapes,
-    effective,
     empty_clips,
     idle_hole,
     inner_seams,
-    open_gaps,
     visible_seams,
-    welded_gaps,
-    without_gaps,
+    with_gaps_closed,
 )
 from aidl_lang.geometry.boolean import Contact, Contacts, Solid, contacts, lettered_region
 from aidl_lang.geometry.curves import Bounds, Piece, has_extent, larger_side, union_bounds, usable
 from aidl_lang.geometry.faces import ENGRAVED, Shape, own_faces, region_of, union_of
-from aidl_lang.geometry.network import GRID, Network, with_finer_chords
+from aidl_lang.geometry.network import GRID, Network
 from aidl_lang.geometry.notes import finding_notes, gap_note, stroked_note, unusable_note, upright_note
 from aidl_lang.geometry.pieces import LETTERING, detached_notes, piece_notes
 from aidl_lang.geometry.region import Face, Measures, Region, measure
@@ -195,8 +190,8 @@ def draw(model: SolvedModel) -> tuple[Drawing, Findings]:
         s: replace(styles[s], opacity=0.0, stroke=0.0) for s, _, is_bare in veiled if is_bare
     }
     made = {path: [s for s in of if s.geometry.path not in aside] for path, of in shapes.items()}
-    network, walk, masses, traced, gaps = _closed(
-        root, network, shapes, partial(_arranged, root, made, clips, blind)
+    network, gaps, (walk, masses, traced) = with_gaps_closed(
+        network, root, shapes, partial(_arranged, root, made, clips, blind), lambda found: found[0].findings
     )
     regions = {path: outline.region for path, outline in traced.items()}
     bodies = tuple(Body(path, regions[path], of_bodies[path]) for path in (m.structure.path for m in masses))
@@ -220,10 +215,11 @@ def draw(model: SolvedModel) -> tuple[Drawing, Findings]:
         for m in (masses if asked else ())
         for path, pieces in inner_seams(network, m, traced, walk.sections, asked)
     )
-    areas = dict(_areas(root, shapes, aside, walk, masses, ink[0], styles, order))
+    scene = _Scene(root, shapes, engraved, styles, order, walk, masses)
+    areas = dict(scene.areas(aside, ink[0]))
     lying = [*solids, *(area.seen for area in areas.values())]
     ground = legibility.Ground(network, sorted(lying, key=lambda body: body.place), *ink, order)
-    strokes = tuple(_strokes(root, shapes, engraved, walk, areas, styles, regions, ground))
+    strokes = tuple(scene.strokes(areas, regions, ground))
     drawn = {s.path for s in strokes} | {path for path, region in regions.items() if region}
     empty = list(empty_clips(root, drawn))
 
@@ -236,12 +232,11 @@ def draw(model: SolvedModel) -> tuple[Drawing, Findings]:
             if len(styles[s.path].depth) > 1 and s.path in regions and regions[s.path].circle is None
         ]
         for f in walk.findings:
-            if not (isinstance(f, InnerLoop | CoveredHoles) and _is_seen(f, styles, areas, order)):
+            if not (isinstance(f, Covered) and scene.is_seen(f, areas)):
                 notes += finding_notes(f, network)
         notes += detached_notes(root, paths, touching)
         notes += piece_notes(root, walk, masses, solids, touching.near())
-        notes += _unseen(root, shapes, styles, ground)
-        notes += _covered_letters(root, walk, masses, ground)
+        notes += [*scene.unseen(ground), *scene.covered_letters(ground)]
         notes += legibility.overhanging_notes(root, bodies, strokes)
         notes += legibility.colliding_notes(root, strokes, network.tolerance)
         if any(body.style.material for body in bodies):
@@ -260,32 +255,11 @@ def draw(model: SolvedModel) -> tuple[Drawing, Findings]:
     return drawing, Findings([d for d in (*unusable, *empty) if d.is_error], Later(everything))
 
 
-def _closed(
-    root: SolvedStructure,
-    network: Network,
-    shapes: _Shapes,
-    arranged: Callable[[Network], _Arranged],
-) -> tuple[Network, Bodies, list[Mass], dict[str, Traced], list[Gap]]:
-    """Returns the network with small gaps between curves closed, what they enclose, and these gaps."""
-    found = with_finer_chords(network, arranged)
-    gaps = open_gaps(network, found[0].findings, shapes)
-    while gaps:
-        joined = Network(without_gaps(network.curves, gaps), box=network.box)
-        then = with_finer_chords(joined, arranged)
-        kept = effective(gaps, then[0].findings)
-        if len(kept) == len(gaps):
-            network, found = joined, then
-            break
-        gaps = kept
-    gaps += welded_gaps(network, found[0].findings, root.walk(), shapes)
-    return network, *found, gaps
-
-
 def _arranged(
     root: SolvedStructure, shapes: _Shapes, clips: Clips, blind: Collection[str], network: Network
 ) -> _Arranged:
     """Returns the bodies, and the outlines of everything that has material or cuts, in order of writing."""
-    walk = Bodies(network, shapes, clip_sections(network, root, clips), blind)
+    walk = Bodies(network, shapes, dict(clip_sections(network, root, clips)), blind)
     masses = _root_masses(walk, root)
     walk.sections.update((m.structure.path, m.section) for m in masses)
     paths = [s.path for s in root.walk() if s.path in walk.sections]
@@ -350,173 +324,165 @@ def _root_masses(walk: Bodies, root: SolvedStructure) -> list[Mass]:
     return list(cut.islands)
 
 
-def _covered_letters(
-    root: SolvedStructure, walk: Bodies, masses: list[Mass], ground: legibility.Ground
-) -> Iterator[Diagnostic]:
-    """Warnings about letters of solids and holes that later bodies lie over."""
-    # The masses of an assembly follow its own.
-    place = {s.path: ground.order[m.structure.path] for m in masses for s in m.structure.walk()}
-    for structure in root.walk():
-        for face in walk.faces.get(structure.path, ()) if structure.path in place else ():
-            if all(g.type == LETTERING for g in face.geometries):
-                share, by = ground.hidden_part(face.section, place[structure.path])
-                if share >= legibility.COVERED:
-                    yield legibility.lettering_note(structure, face.geometries[0], share, by)
+@record()
+class _Scene:
+    """What is drawn of a model: its curves by structure, their looks and order, and what they bound."""
 
+    root: SolvedStructure
+    shapes: _Shapes
+    engraved: _Shapes
+    styles: dict[str, Style]
+    order: Mapping[str, int]
+    walk: Bodies
+    masses: Sequence[Mass]
 
-def _strokes(
-    root: SolvedStructure,
-    shapes: _Shapes,
-    engraved: _Shapes,
-    walk: Bodies,
-    areas: _Areas,
-    styles: dict[str, Style],
-    regions: dict[str, Region],
-    ground: legibility.Ground,
-) -> Iterator[Stroke]:
-    """Yields the curves of drawings, and those of other structures that bound nothing."""
-    loose = {f.structure.path: f.curves for f in walk.findings if isinstance(f, LooseCurves)}
-    own = _colored_drawings(root)
-    for structure in stacked(root):
-        path, style = structure.path, styles[structure.path]
-        if structure.kind == "drawing":
-            yield from _inked(structure, shapes[path], style, ground, areas, is_own=path in own)
-        for shape in engraved.get(path, ()):
-            look = styled(replace(style, color=None), shape.geometry)
-            for pieces, faces in _told_apart([shape], ground.curves, is_area=look.is_area):
-                yield Stroke(path, shape.geometry.path, pieces, look, faces=faces)
-        if structure.kind != "drawing":
-            for geometry in structure.drawn:
-                if geometry.path in areas:
-                    yield from _colored(structure, geometry, style, areas[geometry.path])
-        if style.is_blind and path in regions:
-            yield Stroke(path, path, regions[path].pieces, style, over=style.color)
-        for leaf, number in loose.get(path, ()):
-            if pieces := walk.inner_pieces(structure, number):
-                yield Stroke(path, leaf.path, pieces, style, "open")
-    if root.kind == "hole" and root.path in regions:
-        yield Stroke(root.path, root.path, regions[root.path].pieces, styles[root.path], "hole")
+    @cached_property
+    def colored(self) -> set[str]:
+        """The paths of drawings with a colour of their own, or from a drawing around them."""
+        return {
+            below.path
+            for s in self.root.walk()
+            if s.kind == "drawing" and css_color(s.attributes.get("color", ()))
+            for below in s.walk()
+        }
 
+    def _has_own_color(self, drawing: SolvedStructure, shape: Shape) -> bool:
+        return drawing.path in self.colored or "color" in shape.geometry.attributes
 
-def _inked(
-    drawing: SolvedStructure,
-    shapes: list[Shape],
-    style: Style,
-    ground: legibility.Ground,
-    areas: _Areas,
-    *,
-    is_own: bool,
-) -> Iterator[Stroke]:
-    alike: dict[tuple[Style, str | None, str | None], list[Shape]] = {}
-    place = ground.order[drawing.path]
-    for shape in shapes:
-        look = styled(style, shape.geometry)
-        is_asked = is_own or "color" in shape.geometry.attributes
-        is_hidden = not is_asked and ground.hides(look.color, shape.numbers, place, wholly=False)
-        over = look.color if is_hidden else None
-        if not is_asked and not is_hidden and shape.geometry.type == LETTERING:
-            over = ground.below(shape.numbers, place)
-        # What is engraved as areas is one area, the rest a stroke for each shape.
-        alike.setdefault((look, over, None if look.is_area else shape.geometry.path), []).append(shape)
-    for (look, over, _), together in alike.items():
-        geometry = together[0].geometry
-        if geometry.path in areas and not look.is_area:
-            yield from _colored(drawing, geometry, style, areas[geometry.path])
-            continue
-        for pieces, faces in _told_apart(together, ground.curves, is_area=look.is_area):
-            yield Stroke(drawing.path, geometry.path, pieces, look, over=over, faces=faces)
-
-
-def _is_seen(
-    found: InnerLoop | CoveredHoles, styles: dict[str, Style], areas: _Areas, order: Mapping[str, int]
-) -> bool:
-    """Tells whether a face that adds nothing is drawn: by seams, as an area, or on one."""
-    own = found.face.geometries
-    if styles[found.structure.path].has_seams or any(is_filled(g, found.structure.kind) for g in own):
-        return True
-    place = max(order[g.path] for g in own)
-    below = (area.whole for path, area in areas.items() if order[path] <= place)
-    return any(area.overlaps(found.face.section) for area in below)
-
-
-def _unseen(
-    root: SolvedStructure, shapes: _Shapes, styles: dict[str, Style], ground: legibility.Ground
-) -> Iterator[Diagnostic]:
-    """Yields warnings on strokes in the colour below, and under a body unless one of their array shows."""
-    own = _colored_drawings(root)
-    for drawing in (s for s in stacked(root) if s.kind == "drawing"):
-        lost: dict[str, list[str]] = {}
-        covered: dict[str, list[str]] = {}
-        seen: set[str] = set()
-        for shape in shapes[drawing.path]:
-            look, numbers = styled(styles[drawing.path], shape.geometry), shape.numbers
-            place = ground.order[shape.geometry.path]
-            if (by := ground.covering(numbers, place)) is not None:
-                covered.setdefault(by, []).append(shape.geometry.name)
-            else:
-                seen.add(shape.geometry.name.partition("[")[0])
-            if by is None and shape.geometry.type == LETTERING:
-                share, over_it = ground.covered_part(numbers, place)
-                if share >= legibility.COVERED:
-                    yield legibility.lettering_note(drawing, shape.geometry, share, over_it)
-            is_asked = drawing.path in own or "color" in shape.geometry.attributes
-            if is_asked and look.color and ground.hides(look.color, numbers, place, wholly=True):
-                lost.setdefault(look.color, []).append(shape.geometry.name)
-        yield from (legibility.unseen_note(drawing, names, color) for color, names in lost.items())
-        for by, names in covered.items():
-            if whole := [name for name in names if name.partition("[")[0] not in seen]:
-                yield legibility.covered_note(drawing, whole, by)
-
-
-def _areas(
-    root: SolvedStructure,
-    shapes: _Shapes,
-    aside: Collection[str],
-    walk: Bodies,
-    masses: Sequence[Mass],
-    ink: Sequence[Piece],
-    styles: dict[str, Style],
-    order: Mapping[str, int],
-) -> Iterator[tuple[str, _Area]]:
-    """Yields the paths and areas of geometry with a look of its own: what it encloses of its body, or all
-    but the holes in it if it lies `aside`, as a veil.
-    """
-    network, mass_of = walk.network, {part.path: m for m in masses for part in united_parts(m.structure)}
-    plain: dict[str, list[Shape]] = {}  # by body: what has its colour
-    for path, m in mass_of.items():
-        of = (s for s in shapes[path] if not is_filled(s.geometry, m.structure.kind))
-        plain.setdefault(m.structure.path, []).extend(of)
-    above: dict[tuple[str, int], Section] = {}  # by body, and how many of these lie above
-    for structure in root.walk():
-        mass, clip = mass_of.get(structure.path), walk.clips.get(structure.path)
-        for shape in shapes[structure.path] if structure.kind != "hole" else ():
-            g, place = shape.geometry, order[shape.geometry.path]
-            if not is_filled(g, structure.kind):
-                continue
-            loose: tuple[Piece, ...] = ()
-            if structure.kind == "drawing":
-                found = list(_told_apart([shape], ink, is_area=True))
-                region = Region(next((faces for _, faces in found if faces), ()))
-                loose = next((lines for lines, faces in found if not faces), ())
-                polygons = map(np.array, region.polygons(network.tolerance))
-                whole = section = fill([network.to_grid(p) * np.float64(GRID) for p in polygons], "EvenOdd")
-            else:
-                whole = union_of(own_faces(network, [shape]).faces)
-                if g.path in aside:
-                    whole = whole - union([v.section for v in mass.voids] if mass else [])
+    def areas(self, aside: Collection[str], ink: Sequence[Piece]) -> Iterator[tuple[str, _Area]]:
+        """Yields the paths and areas of geometry with a look of its own: what it encloses of its body, or all
+        but the holes in it if it lies `aside`, as a veil.
+        """
+        network = self.walk.network
+        mass_of = {part.path: m for m in self.masses for part in united_parts(m.structure)}
+        plain: dict[str, list[Shape]] = {}  # by body: what has its colour
+        for path, m in mass_of.items():
+            of = (s for s in self.shapes[path] if not is_filled(s.geometry, m.structure.kind))
+            plain.setdefault(m.structure.path, []).extend(of)
+        above: dict[tuple[str, int], Section] = {}  # by body, and how many of these lie above
+        for structure in self.root.walk():
+            mass, clip = mass_of.get(structure.path), self.walk.clips.get(structure.path)
+            for shape in self.shapes[structure.path] if structure.kind != "hole" else ():
+                g, place = shape.geometry, self.order[shape.geometry.path]
+                if not is_filled(g, structure.kind):
+                    continue
+                loose: tuple[Piece, ...] = ()
+                if structure.kind == "drawing":
+                    found = list(_told_apart([shape], ink, is_area=True))
+                    region = Region(next((faces for _, faces in found if faces), ()))
+                    loose = next((lines for lines, faces in found if not faces), ())
+                    polygons = map(np.array, region.polygons(network.tolerance))
+                    whole = section = fill(
+                        [network.to_grid(p) * np.float64(GRID) for p in polygons], "EvenOdd"
+                    )
                 else:
-                    whole = whole & (mass.section if mass else union([]))
-                section = whole = whole & clip if clip is not None else whole
-                body = mass.structure.path if mass else ""
-                if later := [s for s in plain.get(body, ()) if order[s.geometry.path] > place]:
-                    if (key := (body, len(later))) not in above:
-                        above[key] = union_of(own_faces(network, later).faces)
-                    section = section - above[key]  # in the colour of the body again
-                region = trace(network, section).region
-            if region:
-                look = styled(styles[structure.path], g)
-                seen = Solid(g.path, region, section, place, look.color, look.is_clear)
-                yield g.path, _Area(seen, whole, loose)
+                    whole = union_of(own_faces(network, [shape]).faces)
+                    if g.path in aside:
+                        whole = whole - union([v.section for v in mass.voids] if mass else [])
+                    else:
+                        whole = whole & (mass.section if mass else union([]))
+                    section = whole = whole & clip if clip is not None else whole
+                    body = mass.structure.path if mass else ""
+                    if later := [s for s in plain.get(body, ()) if self.order[s.geometry.path] > place]:
+                        if (key := (body, len(later))) not in above:
+                            above[key] = union_of(own_faces(network, later).faces)
+                        section = section - above[key]  # in the colour of the body again
+                    region = trace(network, section).region
+                if region:
+                    look = styled(self.styles[structure.path], g)
+                    seen = Solid(g.path, region, section, place, look.color, look.is_clear)
+                    yield g.path, _Area(seen, whole, loose)
+
+    def strokes(
+        self, areas: _Areas, regions: dict[str, Region], ground: legibility.Ground
+    ) -> Iterator[Stroke]:
+        """Yields the curves of drawings, and those of other structures that bound nothing."""
+        loose = {f.structure.path: f.curves for f in self.walk.findings if isinstance(f, LooseCurves)}
+        for structure in stacked(self.root):
+            path, style = structure.path, self.styles[structure.path]
+            if structure.kind == "drawing":
+                yield from self._inked(structure, ground, areas)
+            for shape in self.engraved.get(path, ()):
+                look = styled(replace(style, color=None), shape.geometry)
+                for pieces, faces in _told_apart([shape], ground.curves, is_area=look.is_area):
+                    yield Stroke(path, shape.geometry.path, pieces, look, faces=faces)
+            if structure.kind != "drawing":
+                for geometry in structure.drawn:
+                    if geometry.path in areas:
+                        yield from _colored(structure, geometry, style, areas[geometry.path])
+            if style.is_blind and path in regions:
+                yield Stroke(path, path, regions[path].pieces, style, over=style.color)
+            for leaf, number in loose.get(path, ()):
+                if pieces := self.walk.inner_pieces(structure, number):
+                    yield Stroke(path, leaf.path, pieces, style, "open")
+        if self.root.kind == "hole" and self.root.path in regions:
+            path = self.root.path
+            yield Stroke(path, path, regions[path].pieces, self.styles[path], "hole")
+
+    def _inked(self, drawing: SolvedStructure, ground: legibility.Ground, areas: _Areas) -> Iterator[Stroke]:
+        alike: dict[tuple[Style, str | None, str | None], list[Shape]] = {}
+        place, style = self.order[drawing.path], self.styles[drawing.path]
+        for shape in self.shapes[drawing.path]:
+            look = styled(style, shape.geometry)
+            is_asked = self._has_own_color(drawing, shape)
+            is_hidden = not is_asked and ground.hides(look.color, shape.numbers, place, wholly=False)
+            over = look.color if is_hidden else None
+            if not is_asked and not is_hidden and shape.geometry.type == LETTERING:
+                over = ground.below(shape.numbers, place)
+            # What is engraved as areas is one area, the rest a stroke for each shape.
+            alike.setdefault((look, over, None if look.is_area else shape.geometry.path), []).append(shape)
+        for (look, over, _), together in alike.items():
+            geometry = together[0].geometry
+            if geometry.path in areas and not look.is_area:
+                yield from _colored(drawing, geometry, style, areas[geometry.path])
+                continue
+            for pieces, faces in _told_apart(together, ground.curves, is_area=look.is_area):
+                yield Stroke(drawing.path, geometry.path, pieces, look, over=over, faces=faces)
+
+    def is_seen(self, found: Covered, areas: _Areas) -> bool:
+        """Tells whether a face that adds nothing is drawn: by seams, as an area, or on one."""
+        own, structure = found.face.geometries, found.structure
+        if self.styles[structure.path].has_seams or any(is_filled(g, structure.kind) for g in own):
+            return True
+        place = max(self.order[g.path] for g in own)
+        below = (area.whole for path, area in areas.items() if self.order[path] <= place)
+        return any(area.overlaps(found.face.section) for area in below)
+
+    def unseen(self, ground: legibility.Ground) -> Iterator[Diagnostic]:
+        """Yields warnings on strokes in the colour below, or under a body unless one of an array shows."""
+        for drawing in (s for s in stacked(self.root) if s.kind == "drawing"):
+            lost: dict[str, list[str]] = {}
+            covered: dict[str, list[str]] = {}
+            seen: set[str] = set()
+            for shape in self.shapes[drawing.path]:
+                look, numbers = styled(self.styles[drawing.path], shape.geometry), shape.numbers
+                place = self.order[shape.geometry.path]
+                if (by := ground.covering(numbers, place)) is not None:
+                    covered.setdefault(by, []).append(shape.geometry.name)
+                else:
+                    seen.add(shape.geometry.name.partition("[")[0])
+                if by is None and shape.geometry.type == LETTERING:
+                    share, over_it = ground.covered_part(numbers, place)
+                    if share >= legibility.COVERED:
+                        yield legibility.lettering_note(drawing, shape.geometry, share, over_it)
+                is_asked = self._has_own_color(drawing, shape)
+                if is_asked and look.color and ground.hides(look.color, numbers, place, wholly=True):
+                    lost.setdefault(look.color, []).append(shape.geometry.name)
+            yield from (legibility.unseen_note(drawing, names, color) for color, names in lost.items())
+            for by, names in covered.items():
+                if whole := [name for name in names if name.partition("[")[0] not in seen]:
+                    yield legibility.covered_note(drawing, whole, by)
+
+    def covered_letters(self, ground: legibility.Ground) -> Iterator[Diagnostic]:
+        """Warnings about letters of solids and holes that later bodies lie over."""
+        # The masses of an assembly follow its own.
+        place = {s.path: self.order[m.structure.path] for m in self.masses for s in m.structure.walk()}
+        for structure in self.root.walk():
+            for face in self.walk.faces.get(structure.path, ()) if structure.path in place else ():
+                if all(g.type == LETTERING for g in face.geometries):
+                    share, by = ground.hidden_part(face.section, place[structure.path])
+                    if share >= legibility.COVERED:
+                        yield legibility.lettering_note(structure, face.geometries[0], share, by)
 
 
 def _colored(
@@ -550,16 +516,6 @@ def _told_apart(
         yield lines, ()
     if region:
         yield region.pieces, region.faces
-
-
-def _colored_drawings(root: SolvedStructure) -> set[str]:
-    """Returns the paths of drawings with a colour of their own, or from a drawing around them."""
-    return {
-        below.path
-        for s in root.walk()
-        if s.kind == "drawing" and css_color(s.attributes.get("color", ()))
-        for below in s.walk()
-    }
 
 
 def region_alone(root: SolvedStructure, path: str) -> Region:

@@ -5,20 +5,20 @@ from __future__ import annotations
 import math
 from collections import Counter, defaultdict
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import field, replace
+from dataclasses import field
 from typing import TYPE_CHECKING, TypeAlias
 
 from aidl_lang.building.model import Geometry
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
-from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, EllipseArc, Line, Piece, Vec, image
+from aidl_lang.geometry.curves import Piece, Vec, curve_of, image, in_runs
 from aidl_lang.geometry.network import Joined, Network, Use, with_finer_chords
 from aidl_lang.geometry.region import Polygon, Region, polygon_area
 from aidl_lang.geometry.sections import Section, fill, trace, union
-from aidl_lang.geometry.solved import Scalar, SolvedGeometry, described
+from aidl_lang.geometry.solved import Scalar, SolvedGeometry, Values, described
 
 if TYPE_CHECKING:
-    from aidl_lang.common.drawings import Element, Stroke
+    from aidl_lang.common.drawings import Element
 
 # --- Outlines of drawings of other programs, as exact curves, and what they enclose.
 #
@@ -26,45 +26,15 @@ if TYPE_CHECKING:
 # crossing it alternates, as the outlines of parts do: a circle in a plate is a hole, and one in that is
 # material again.
 
-_WINDING = "winding_contours"
-CONTOURS = ("contours", _WINDING)
+WINDING = "winding_contours"
+CONTOURS = ("contours", WINDING)
 ENGRAVED = "engraved_contours"
 """The types of a part that is one shape of a file: filled by alternation, or by the non-zero rule."""
 
 Crossing: TypeAlias = tuple[SolvedGeometry, tuple[Vec, ...]]
 """A shape of a file, and the places where it crosses itself."""
 
-_ROUND = 1e-8
-"""Difference of the radii of an ellipse, relative to them, below which it is a circle."""
-_FLAT = 1e-12
-
-
 # --- Curves ----------------------------------------------------------------------------------------
-
-
-def curve_of(stroke: Stroke) -> Piece:
-    """Returns the exact curve of a stroke."""
-    if isinstance(stroke, tuple):
-        return Line(*stroke) if len(stroke) == 2 else Bezier(*stroke)
-    (ux, uy), (vx, vy) = stroke.u, stroke.v
-    # Conjugate half-diameters become those of the axes by a shift of the parameter.
-    shift = 0.5 * math.atan2(2 * (ux * vx + uy * vy), ux * ux + uy * uy - vx * vx - vy * vy)
-    c, s = math.cos(shift), math.sin(shift)
-    long, short = (ux * c + vx * s, uy * c + vy * s), (vx * c - ux * s, vy * c - uy * s)
-    sense = math.copysign(1.0, long[0] * short[1] - long[1] * short[0])
-    rx, ry = math.hypot(*long), math.hypot(*short)
-    if ry <= _FLAT * rx:
-        return Line(stroke.start, stroke.end)
-    angle, sweep = math.atan2(long[1], long[0]), sense * stroke.sweep
-    if rx - ry <= _ROUND * rx:
-        radius = (rx + ry) / 2
-        if stroke.is_whole:
-            return Circle(stroke.center, radius)
-        return Arc(stroke.center, radius, stroke.start, stroke.end, sweep)
-    if stroke.is_whole:
-        return Ellipse(stroke.center, rx, ry, angle)
-    first = sense * (stroke.first - shift)
-    return EllipseArc(stroke.center, rx, ry, angle, stroke.start, stroke.end, first, sweep)
 
 
 def parts_of(
@@ -91,27 +61,24 @@ def parts_of(
 
 def _contours(g: Geometry, name: str, curves: Sequence[Piece], element: Element) -> SolvedGeometry:
     checkpoint()
-    path = f"{g.path}.{name}"
-    edges = tuple(edge_of(g, f"{name}.edge[{k}]", curve) for k, curve in enumerate(curves))
+    edges = as_edges(g, curves, f"{name}.")
     kind, is_filled = CONTOURS[element.is_winding], g.filled
     looks: dict[str, tuple[Scalar, ...]] = {}
     if (engraving := element.engraving) is not None:
         kind, is_filled = ENGRAVED, is_filled or engraving.is_area
         looks = {k: (v,) for k, v in (("layer", engraving.layer), ("color", engraving.color)) if v}
-    made = SolvedGeometry(name, path, kind, {}, None, edges, g.construction, g.span, filled=is_filled)
-    return replace(made, attributes=looks)
+    known = name, f"{g.path}.{name}", kind, Values(), None, edges, g.construction, g.span
+    return SolvedGeometry(*known, attributes=looks, filled=is_filled)
 
 
-def edge_of(of: Geometry, path: str, curve: Piece) -> SolvedGeometry:
-    """Returns one of the curves that a primitive is made of, by its path in it."""
-    kind, values = described(curve)
-    name, whole = path.rpartition(".")[2], f"{of.path}.{path}"
-    return SolvedGeometry(name, whole, kind, values, curve, (), of.construction, of.span, piece_of=of.path)
-
-
-def is_winding(shape: SolvedGeometry) -> bool:
-    """Tells whether a shape of a file is filled by the non-zero rule."""
-    return shape.type == _WINDING
+def as_edges(of: Geometry, curves: Iterable[Piece], within: str = "") -> tuple[SolvedGeometry, ...]:
+    """Returns the curves that a primitive is made of; `within`: the part of it that they are parts of."""
+    found = []
+    for k, curve in enumerate(curves):
+        (kind, values), name = described(curve), f"edge[{k}]"
+        known = name, f"{of.path}.{within}{name}", kind, values, curve, (), of.construction, of.span
+        found.append(SolvedGeometry(*known, piece_of=of.path))
+    return tuple(found)
 
 
 # --- What they enclose -----------------------------------------------------------------------------
@@ -133,7 +100,7 @@ def _enclosed(
         uses = [use for number in numbers for use in network.uses[number] if use in closed]
         if not uses:
             continue
-        if is_winding(shape):
+        if shape.type == WINDING:
             sections.append(fill([network.polyline(loop) for loop in _walks(network, uses)], "NonZero"))
         else:
             sections.append(_alternating(network, uses))
@@ -157,15 +124,9 @@ def _crossings(network: Network, uses: Sequence[Use]) -> list[int]:
     return list(dict.fromkeys(node for ends in passed for node, count in ends.items() if count > 2))
 
 
-def _walks(network: Network, uses: Sequence[Use]) -> Iterator[list[Use]]:
-    """Yields the runs of edges of which each begins where the one before it ends, as the file has them."""
-    walk: list[Use] = []
-    for use in uses:
-        if walk and network.first(use) != network.last(walk[-1]):
-            yield walk
-            walk = []
-        walk.append(use)
-    yield walk
+def _walks(network: Network, uses: Iterable[Use]) -> list[list[Use]]:
+    """Returns the runs of edges of which each begins where the one before it ends, as the file has them."""
+    return in_runs(uses, lambda before, use: network.last(before) == network.first(use))
 
 
 def _crossing(sections: Sequence[Section], nodes: Sequence[set[int]]) -> list[list[int]]:
@@ -320,21 +281,17 @@ def _loops(network: Network, uses: list[Use]) -> list[list[Use]]:
         ways[network.last((edge, forward))].append((edge, not forward))
     left = Counter(edge for edge, _ in uses)
     loops = []
-    for use in uses:
-        if left[use[0]]:
-            loops.append(_walk(network, use, ways, left))
+    for first in uses:
+        if not left[first[0]]:
+            continue
+        loop = [first]
+        left[first[0]] -= 1
+        while (node := network.last(loop[-1])) != network.first(first):
+            following = next(use for use in ways[node] if left[use[0]])
+            left[following[0]] -= 1
+            loop.append(following)
+        loops.append(loop)
     return loops
-
-
-def _walk(network: Network, first: Use, ways: dict[int, list[Use]], left: dict[int, int]) -> list[Use]:
-    """Returns the loop of edges from the first onwards until its start comes round again."""
-    loop = [first]
-    left[first[0]] -= 1
-    while (node := network.last(loop[-1])) != network.first(first):
-        following = next(use for use in ways[node] if left[use[0]])
-        left[following[0]] -= 1
-        loop.append(following)
-    return loop
 
 
 def _outlines(network: Network, uses: Iterable[Use]) -> tuple[list[Polygon], set[int]]:
@@ -366,20 +323,16 @@ def _next_clockwise(network: Network, edges: list[int]) -> dict[Use, Use]:
     for edge in edges:
         for forward in (True, False):
             use = (edge, forward)
-            leaving[network.first(use)].append((_direction(network, use), use))
+            inner, node = network.inner(use), network.first(use)
+            target = inner[0] if len(inner) else network.node_grid[network.last(use)]
+            dx, dy = target - network.node_grid[node]
+            leaving[node].append((math.atan2(dy, dx), use))
     turn: dict[Use, Use] = {}
     for ways in leaving.values():
         around = [use for _, use in sorted(ways)]
         for k, (edge, forward) in enumerate(around):
             turn[edge, not forward] = around[k - 1]
     return turn
-
-
-def _direction(network: Network, use: Use) -> float:
-    inner = network.inner(use)
-    target = inner[0] if len(inner) else network.node_grid[network.last(use)]
-    dx, dy = target - network.node_grid[network.first(use)]
-    return math.atan2(dy, dx)
 
 
 def _chain_free(

@@ -14,7 +14,7 @@ from dataclasses import field, replace
 
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
-from aidl_lang.geometry.curves import Arc, Circle, Line, Piece, Vec, turn_between
+from aidl_lang.geometry.curves import Arc, Circle, Line, Piece, Vec, meeting, turn_between
 from aidl_lang.geometry.intersect import circle_circle, line_circle
 from aidl_lang.geometry.region import length
 
@@ -188,14 +188,11 @@ def solve(work: Work) -> Finished | None:
     if touch is None:
         return None
     u, v, center = touch
-    return Finished(work, (u, v), _arc(corner, work.sizes[0], center, a.point(u), b.point(v)))
-
-
-def _arc(corner: Corner, radius: float, center: Vec, p: Vec, q: Vec) -> Arc:
-    """Returns the arc from the first arm to the second: with the second one to its left, it turns right."""
+    p, q = a.point(u), b.point(v)
+    # From the first arm to the second: with the second one to its left, the arc turns right.
     first, last = (math.atan2(e[1] - center[1], e[0] - center[0]) for e in (p, q))
     sweep = (last - first) % math.tau if corner.turn < 0 else -((first - last) % math.tau)
-    return Arc(center, radius, p, q, sweep)
+    return Finished(work, (u, v), Arc(center, work.sizes[0], p, q, sweep))
 
 
 def _along(curve: Piece, distance: float) -> float | None:
@@ -232,9 +229,7 @@ def _round(corner: Corner, radius: float) -> tuple[float, float, Vec] | None:
 def _moved(curve: Line | Arc, left: float) -> Line | Circle | None:
     """Returns the endless line or whole circle of all points at a distance to the left of a curve."""
     if isinstance(curve, Line):
-        dx, dy = curve.direction(0.0)
-        (x0, y0), (x1, y1) = curve.start, curve.end
-        return Line((x0 - left * dy, y0 + left * dx), (x1 - left * dy, y1 + left * dx))
+        return Line(curve.parallel(0.0, left), curve.parallel(1.0, left))
     radius = curve.radius - math.copysign(left, left * curve.sweep)
     return Circle(curve.center, radius) if radius > 0 else None
 
@@ -245,10 +240,7 @@ def _meet(a: Line | Circle, b: Line | Circle) -> list[Vec]:
         return line_circle(b, a, slack) if isinstance(b, Line) else circle_circle(a, b, slack)
     if isinstance(b, Circle):
         return line_circle(a, b, _EXACT * b.radius)
-    (ax, ay), (bx, by) = a.direction(0.0), b.direction(0.0)
-    x, y = b.start[0] - a.start[0], b.start[1] - a.start[1]
-    t = (x * by - y * bx) / (ax * by - ay * bx)
-    return [(a.start[0] + t * ax, a.start[1] + t * ay)]
+    return [at] if (at := meeting(a, b)) is not None else []
 
 
 def _foot(curve: Line | Arc, p: Vec) -> float | None:

@@ -429,7 +429,6 @@ def _crossings(network: Network, ring: list[_Pass]) -> Iterator[Crossing]:
 
 
 def _do_cross(network: Network, one: _Pass, other: _Pass) -> bool:
-    """Tells whether two ways through a node change sides; what touches, or runs along, does not."""
     ways = (network.piece(use).derivative(0) for use in (one.back, one.on, other.back, other.on))
     base, *rest = (math.atan2(dy, dx) for dx, dy in ways)
     on, *others = ((angle - base) % math.tau for angle in rest)

@@ -147,6 +147,8 @@ CHORD = 1e-4
 """Largest distance of a chord from its curve, relative to the size of the drawing."""
 FINE_CHORD = CHORD / 100
 """The same for curves that come so close to each other that their chords cross."""
+_MOST_CHORDS = 2000
+"""Chords of an edge, however fine."""
 _PER_PAIR = 1e-4
 """Seconds of a processor that it takes at least to find where two cubics meet that may."""
 GRID = 1e-8
@@ -286,7 +288,7 @@ class Network:
                 for number, at in ((i, t), (j, s)):
                     if node not in own_ends[number]:
                         cuts[number].append((at, node))
-        return [self._split(i, _sorted_cuts(c)) for i, c in enumerate(cuts)]
+        return [self._split(i, sorted(c)) for i, c in enumerate(cuts)]
 
     def _ends_on_others(
         self, hulls: Hulls, pairs: Ints, own_nodes: Ints, places: Floats
@@ -302,7 +304,9 @@ class Network:
                 yield from zip(other[is_new].tolist(), node[is_new].tolist(), strict=True)
 
     def _split(self, number: int, cuts: list[tuple[float, int]]) -> list[Use]:
+        """Returns the edges of a curve between cuts in order; a node that follows itself is kept once."""
         curve = self.curves[number]
+        cuts = cuts[:1] + [b for a, b in pairwise(cuts) if b[1] != a[1]]
         if len(cuts) == 1:
             # Both ends in one node: a whole circle or ellipse, else too short to see.
             node = cuts[0][1]
@@ -339,7 +343,8 @@ class Network:
         edges, curves = self.edges, self.curves
         chords = [self.size * (FINE_CHORD if e.curve in self._fine else CHORD) for e in edges]
         counts = [
-            _segments(curves[e.curve], e.t1 - e.t0, chord) for e, chord in zip(edges, chords, strict=True)
+            min(curves[e.curve].chords(chord, e.t1 - e.t0, math.tau / 32), _MOST_CHORDS)
+            for e, chord in zip(edges, chords, strict=True)
         ]
         inner = self._sizes = np.array(counts, dtype=np.intp) - 1
         begins = np.cumsum(inner) - inner
@@ -468,26 +473,3 @@ def with_finer_chords(network: Network, work: Callable[[Network], T]) -> T:
 def pack(grid: Ints) -> Ints:
     """Returns one number for each grid point; coordinates have at most 32 bits."""
     return (grid[:, 0] << 32) + grid[:, 1]
-
-
-def _segments(curve: Piece, share: float, chord: float) -> int:
-    """Returns the number of chords of a part: at least two, so that a curved edge owns a vertex."""
-    if isinstance(curve, Line):
-        return 1
-    if isinstance(curve, Bezier):
-        # A chord of a curve departs by at most |p''| Δt² / 8; |p''| <= 6 max |second difference|.
-        p0, p1, p2, p3 = curve.p0, curve.p1, curve.p2, curve.p3
-        bend = max(
-            math.hypot(p0[0] - 2 * p1[0] + p2[0], p0[1] - 2 * p1[1] + p2[1]),
-            math.hypot(p1[0] - 2 * p2[0] + p3[0], p1[1] - 2 * p2[1] + p3[1]),
-        )
-        return max(3, min(200, math.ceil(share * math.sqrt(0.75 * bend / chord))))
-    _, rx, ry, *_, sweep = curve.frame
-    step = min(math.tau / 32, 2 * math.acos(max(0.0, 1 - chord / max(rx, ry, chord))))
-    return max(2, min(2000, math.ceil(abs(sweep) * share / step)))
-
-
-def _sorted_cuts(cuts: list[tuple[float, int]]) -> list[tuple[float, int]]:
-    """Returns cuts in order of their parameter, a node that follows itself kept once."""
-    cuts = sorted(cuts)
-    return cuts[:1] + [b for a, b in pairwise(cuts) if b[1] != a[1]]

@@ -13,9 +13,8 @@ from itertools import combinations, islice
 from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix, Label
 from aidl_lang.common.prose import counted, named, rough, ticked
 from aidl_lang.common.source import Span
-from aidl_lang.geometry.bodies import CoveredHoles, CrossedOutline, End, Gap, InnerLoop, LooseCurves, ends_of
+from aidl_lang.geometry.bodies import AGAIN, Covered, End, Finding, Gap, LooseCurves, ends_of, label
 from aidl_lang.geometry.curves import LARGEST, NO_LENGTH, Bezier, Vec, larger_side
-from aidl_lang.geometry.faces import is_winding
 from aidl_lang.geometry.network import Network
 from aidl_lang.geometry.solved import SolvedGeometry, SolvedStructure, at
 
@@ -27,10 +26,10 @@ def local(structure: SolvedStructure, geometry: SolvedGeometry) -> str:
     return geometry.path.removeprefix(structure.path + ".")
 
 
-def _inner_loop(finding: InnerLoop) -> Diagnostic:
+def _inner_loop(finding: Covered) -> Diagnostic:
     s, face = finding.structure, finding.face
     names = [local(s, g) for g in face.geometries]
-    around = [local(s, g) for g in finding.around]
+    around = [local(s, g) for g in finding.by]
     one = len(set(names)) == 1
     kind = "" if s.kind == "solid" else f"{s.kind} "
     hole = f"hole {_fresh(s, names[0])} {{ {names[0]} = … }}"
@@ -40,7 +39,7 @@ def _inner_loop(finding: InnerLoop) -> Diagnostic:
         f"{'adds' if one else 'add'} nothing to {kind}`{s.path}`",
         face.geometries[0].span or s.span,
         "faces of one structure are united",
-        tuple(Label(g.span, "already covers it") for g in finding.around[:2] if g.span),
+        tuple(Label(g.span, "already covers it") for g in finding.by[:2] if g.span),
         (
             f"to cut it out, put it into a hole: `{hole}`",
             f'to draw it on top, give it a look of its own, as `@color("gold")` before it, or put it into a '
@@ -217,16 +216,16 @@ def _join_fix(structure: SolvedStructure, equation: str) -> Fix | None:
     return Fix("join the two ends", (Edit(place, text),))
 
 
-def _covered_holes(finding: CoveredHoles) -> Diagnostic:
-    s, count = finding.structure, finding.count
-    face, by = named([local(s, g) for g in finding.face.geometries]), [local(s, g) for g in finding.covers]
+def _covered_holes(finding: Covered) -> Diagnostic:
+    s, count = finding.structure, finding.holes
+    face, by = named([local(s, g) for g in finding.face.geometries]), [local(s, g) for g in finding.by]
     holes = f"{count} holes of {face} are" if count > 1 else f"a hole of {face} is"
     return Diagnostic(
         "W0708",
         f"{holes} filled again by {named(by)} in {s.kind} `{s.path}`",
         finding.face.geometries[0].span or s.span,
         "faces of one structure are united",
-        tuple(Label(g.span, "covers what it leaves open") for g in finding.covers[:2] if g.span),
+        tuple(Label(g.span, "covers what it leaves open") for g in finding.by[:2] if g.span),
         (
             f"if {named(by)} shall only guide other geometry, write `construction` before it",
             f"to cut both, unite them before: `cut(union(…, {by[0]}), …)`",
@@ -315,28 +314,21 @@ _MEASURES = ("radius", "rx", "width", "length", "size", "diameter", "module")
 """Measures by which a geometry may be held open."""
 
 
-# --- Diagnostics on imported outlines: open ones in solids and holes, and such as cross themselves.
+# --- Diagnostics on imported outlines that are open, in solids and holes.
 
-_AGAIN = "mend it in the program that drew it"
 _MOST_ENDS = 100
 """Open ends of one outline among which the two nearest are sought."""
 
 
-def finding_notes(
-    finding: InnerLoop | CoveredHoles | CrossedOutline | LooseCurves | Diagnostic, network: Network
-) -> Iterator[Diagnostic]:
+def finding_notes(finding: Finding, network: Network) -> Iterator[Diagnostic]:
     """Yields the warnings about a finding: open curves are one only in solids and holes, those imported
     apart.
     """
     match finding:
-        case InnerLoop():
-            yield _inner_loop(finding)
         case Diagnostic():
             yield finding
-        case CoveredHoles():
-            yield _covered_holes(finding)
-        case CrossedOutline():
-            yield _crossed(finding)
+        case Covered():
+            yield _covered_holes(finding) if finding.holes else _inner_loop(finding)
         case LooseCurves(structure, curves) if structure.kind != "assembly":
             traced = {g.path: g for top in structure.geometry for g in top.walk() if g.type == "traced"}
             own = [curve for curve in curves if curve[0].piece_of in traced]
@@ -344,11 +336,6 @@ def finding_notes(
                 yield _open(finding, own, traced[own[0][0].piece_of or ""], network)
             if rest := tuple(curve for curve in curves if curve not in own):
                 yield _loose_curves(replace(finding, curves=rest), network)
-
-
-def _label(path: str) -> str:
-    """Returns what a shape of a file is called there, by its path."""
-    return path.rpartition(".")[2].rpartition("[")[0]
 
 
 def _open(
@@ -368,17 +355,17 @@ def _open(
     place = ""
     if gap is not None:
         away = f"{rough(_apart(gap))} mm from there at {at(gap[1])}"
-        place = f": `{_label(name)}` ends at {at(gap[0])}, and {away}"
+        place = f": `{label(name)}` ends at {at(gap[0])}, and {away}"
     what = counted(len(outlines), "outline")
     called = drawing.path.removeprefix(f"{s.path}.").removesuffix(".art")
     enclose = "encloses" if len(outlines) == 1 else "enclose"
-    names = named(_label(path) for path in outlines)
+    names = named(label(path) for path in outlines)
     return Diagnostic(
         "W0751",
         f"{what} of `{called}` {enclose} nothing in {s.kind} `{s.path}`{place}",
         drawing.span or s.span,
         f"{names} {'is' if len(outlines) == 1 else 'are'} open",
-        hints=(f"{_AGAIN}, so that its ends meet", "in a `drawing` open lines are engraved as they are"),
+        hints=(f"{AGAIN}, so that its ends meet", "in a `drawing` open lines are engraved as they are"),
         points=gap or (),
     )
 
@@ -390,19 +377,3 @@ def _nearest(found: Sequence[Vec]) -> tuple[Vec, Vec] | None:
 
 def _apart(pair: tuple[Vec, Vec] | None) -> float:
     return math.inf if pair is None else math.dist(*pair)
-
-
-def _crossed(finding: CrossedOutline) -> Diagnostic:
-    s, outline = finding.structure, finding.outline
-    first, *more = sorted(finding.places)
-    further = f" and in {counted(len(more), 'more place')}" if more else ""
-    rule = "a winding that is not 0" if is_winding(outline) else "every second area"
-    return Diagnostic(
-        "W0753",
-        f"`{_label(outline.path)}`, imported into {s.kind} `{s.path}`, crosses itself at "
-        f"{at(first)}{further}",
-        outline.span or s.span,
-        f"filled is {rule}",
-        hints=(_AGAIN, "crossing lines come out of a cutter as separate pieces"),
-        points=(first, *more[:9]),
-    )

@@ -246,7 +246,7 @@ def _combined(region: Region, strips: Sequence[Strip], *, cut: bool) -> Region:
 # them.
 #
 # A fine sampling tells which curves the hull runs along, and in which order; the points of touch are then
-# found exactly: in closed form for points, arcs and circles, by alternating projection for the others.
+# found exactly, by alternating projection.
 
 _SAMPLES = 720
 _NEAR = 1e-9
@@ -272,9 +272,13 @@ def hull(curves: Sequence[Piece]) -> Region:
     for k, contact in enumerate(contacts):
         arrived, left = spots[k - 1][1], spots[k][0]
         p, q = contact.curve.point(arrived), contact.curve.point(left)
-        if arrived != left:
-            # the hull runs round closed ones forwards
-            stop = arrived + (left - arrived) % 1.0 if contact.curve.is_closed else left
+        stop = left
+        if contact.curve.is_closed:  # the hull runs round it forwards, about as far as its samples do
+            share = (contact.t1 - contact.t0) % 1.0
+            stop = arrived + share + math.remainder(left - arrived - share, 1.0)
+            if stop - arrived > 1 - _NEAR:
+                return Region((Face(Loop((contact.curve,))),))
+        if arrived != stop:
             pieces.append(contact.curve.part(arrived, stop, p, q))
         pieces.append(Line(q, contacts[(k + 1) % len(contacts)].curve.point(spots[k][1])))
     size = max((math.dist(a.ends[0], pieces[0].ends[0]) for a in pieces), default=0.0)
@@ -286,16 +290,13 @@ def _distinct(curves: Sequence[Piece]) -> list[Piece]:
     """Returns each curve once, without those in the disc of a circle, where no line touches two."""
     kept: list[Piece] = []
     for curve in sorted(dict.fromkeys(curves), key=lambda c: -c.radius if isinstance(c, Circle) else 0.0):
-        if not (isinstance(curve, Arc | Circle) and any(_holds(c, curve) for c in kept)):
+        if not isinstance(curve, Arc | Circle) or not any(
+            math.dist(c.center, curve.center) + curve.radius <= c.radius * (1 + _NEAR)
+            for c in kept
+            if isinstance(c, Circle)
+        ):
             kept.append(curve)
     return kept
-
-
-def _holds(outer: Piece, inner: Arc | Circle) -> bool:
-    """Tells whether one curve is a circle in whose disc the other lies."""
-    if not isinstance(outer, Circle):
-        return False
-    return math.dist(outer.center, inner.center) + inner.radius <= outer.radius * (1 + _NEAR)
 
 
 def _contacts(curves: Sequence[Piece]) -> list[_HullContact]:
@@ -353,21 +354,10 @@ def _convex(p: Floats) -> list[int]:
 
 
 def _touch(a: _HullContact, b: _HullContact) -> tuple[float, float]:
-    """Returns where the line from one contact to the next leaves the one and reaches the other."""
+    """Returns where the line from one contact to the next leaves the one and reaches the other: the tangent
+    to each from the point of touch on the other, by turns. An error of one is squared in the other.
+    """
     t, s = a.t1, b.t0
-    one, other = _disc(a.curve, t), _disc(b.curve, s)
-    while one is not None and other is not None and (ways := _tangent(*one, *other)) is not None:
-        # A point of touch beyond the end of an arc: the hull touches the end itself.
-        u, v = (_parameter(c.curve, p, at) for c, p, at in ((a, ways[0], t), (b, ways[1], s)))
-        if u is None:
-            one = a.curve.point(t), 0.0
-        if v is None:
-            other = b.curve.point(s), 0.0
-        if u is not None and v is not None:
-            found = u if one[1] else t, v if other[1] else s
-            if _is_near(a.curve, found[0], t) and _is_near(b.curve, found[1], s):
-                return found
-            break  # discs that all but coincide are touched anywhere
     for _ in range(100):
         before = t, s
         t = _tangent_from(a.curve, b.curve.point(s), t)
@@ -375,51 +365,6 @@ def _touch(a: _HullContact, b: _HullContact) -> tuple[float, float]:
         if abs(t - before[0]) + abs(s - before[1]) < 1e-14:
             break
     return t, s
-
-
-def _is_near(curve: Piece, t: float, sampled: float) -> bool:
-    """Tells whether a parameter lies between the samples around the one that the sampling told."""
-    away = abs(t - sampled)
-    return min(away, 1 - away if curve.is_closed else away) < 2 / _SAMPLES
-
-
-def _disc(curve: Piece, t: float) -> tuple[Vec, float] | None:
-    """Returns a centre and a radius; the end of a line is a disc without extent."""
-    if isinstance(curve, Line):
-        return curve.point(t), 0.0
-    return (curve.center, curve.radius) if isinstance(curve, Arc | Circle) else None
-
-
-def _tangent(c: Vec, r: float, d: Vec, s: float) -> tuple[Vec, Vec] | None:
-    """Returns where the line with both discs on its left touches; None if one lies in the other."""
-    x, y = d[0] - c[0], d[1] - c[1]
-    square = x * x + y * y
-    rest = square - (r - s) ** 2
-    if min(r, s) == 0 and abs(rest) <= 2 * _NEAR * square:
-        rest = 0.0  # a point on the circle is where it is touched: the root of a rounding error is none
-    elif rest <= 0:
-        return None
-    if square == 0:
-        return None
-    # The outward normal n has length 1 and n·(d - c) = r - s.
-    k, h = (r - s) / square, math.sqrt(rest) / square
-    n = k * x + h * y, k * y - h * x
-    return (c[0] + r * n[0], c[1] + r * n[1]), (d[0] + s * n[0], d[1] + s * n[1])
-
-
-def _parameter(curve: Piece, p: Vec, about: float) -> float | None:
-    """Returns where a curve passes a point of its circle; None if beyond the end that the hull touches."""
-    if isinstance(curve, Line):
-        return about
-    t = curve.nearest(p)
-    size = curve.radius if isinstance(curve, Arc | Circle) else 1.0
-    if curve.is_closed or about not in (0.0, 1.0):
-        return t
-    if math.dist(curve.point(about), p) <= _NEAR * size:
-        return about
-    # A point off the arc, or one elsewhere on it, where the same circle is touched from another side.
-    on_arc = math.dist(curve.point(t), p) <= _NEAR * size
-    return t if on_arc and _is_near(curve, t, about) else None
 
 
 def _tangent_from(curve: Piece, p: Vec, t: float) -> float:
@@ -436,11 +381,14 @@ def _tangent_from(curve: Piece, p: Vec, t: float) -> float:
         low, high = max(0.0, low), min(1.0, high)
     first = across(low)
     if first * across(high) > 0:
+        on_it = curve.locate(p, _NEAR * extent([curve]))  # a point on a curve is where it is touched
+        if on_it is not None:
+            away = math.remainder(on_it - t, 1.0) if curve.is_closed else on_it - t
+            return on_it if abs(away) < 2 / _SAMPLES else t
         return t
-    for _ in range(60):
-        middle = (low + high) / 2
+    while low < (middle := (low + high) / 2) < high:
         low, high = (middle, high) if across(middle) * first > 0 else (low, middle)
-    return (low + high) / 2
+    return middle
 
 
 def _joined(pieces: list[Piece]) -> list[Piece]:

@@ -110,10 +110,8 @@ class _Outliner:
         any; then those that its geometry has as a copy.
         """
         left = dict(self.carried_out)
-        for f in own:
+        for f in (*own, *(f for f in self.carried_out if f not in own)):
             yield replace(f, corners=tuple(left.pop(f, ())), sizes=self.sizes.get(f, f.sizes))
-        for f, at in left.items():
-            yield replace(f, corners=tuple(at), sizes=self.sizes.get(f, f.sizes))
 
     # --- Outlines made of others -------------------------------------------------------------------
 
@@ -138,9 +136,7 @@ class _Outliner:
 
     def _exact(self, g: SolvedGeometry, recipe: solved.Recipe) -> SolvedGeometry:
         if g.path not in self.made:
-            curves = self._curves(g, recipe)
-            parts = tuple(as_geometry(f"edges[{k}]", g, c) for k, c in enumerate(curves))
-            self.made[g.path] = replace(g, parts=parts, curve=None)
+            self.made[g.path] = replace(g, parts=solved.edges_of(g, self._curves(g, recipe)), curve=None)
         return replace(self.made[g.path], construction=g.construction)
 
     def _curves(self, g: SolvedGeometry, recipe: solved.Recipe) -> list[Piece]:
@@ -172,7 +168,6 @@ class _Outliner:
         return list(pieces)
 
     def _operand(self, group: Iterable[SolvedGeometry]) -> list[SolvedGeometry]:
-        """Returns the geometry that an outline is made of, as it is drawn."""
         shown = [_shown(self._drawn(self._completed(g))) for g in group]
         return self._finished(shown, self.finishes)
 
@@ -186,7 +181,28 @@ class _Outliner:
         if empty := [r for r, region in zip(recipe.operands, regions, strict=True) if not region]:
             self.notes.append(notes.not_closed(g, recipe, empty[0]))
             return []
-        return self._combined(g, recipe, regions)
+        sharp, region, depth = recipe.words.get("corners") != "round", regions[0], None
+        match recipe.kind:
+            case "offset":
+                distance = recipe.numbers["distance"]
+                result = offset(region, distance, sharp)
+                if not result:
+                    depth = _deepest(region, -distance)
+                elif len(result.faces) > len(region.faces):
+                    self.notes.append(notes.splits(g, recipe, len(result.faces)))
+            case "shell":
+                wall = max(recipe.numbers["thickness"], 0.0)
+                inner = offset(region, -wall, sharp)
+                result = without(region, inner) if inner else region
+                if not inner:
+                    self.notes.append(notes.all_wall(g, recipe, _deepest(region, wall)))
+            case "union":
+                result = united(*regions)
+            case "difference":
+                result = without(*regions)
+            case _:
+                result = reduce(common, regions)
+        return self._left(g, recipe, result.pieces, depth)
 
     def _tiled(
         self, g: SolvedGeometry, recipe: solved.Recipe, groups: list[list[SolvedGeometry]], first: list[Piece]
@@ -213,30 +229,6 @@ class _Outliner:
             self.notes.append(notes.too_many(g, recipe, many.args[0]))
             return []
         return self._left(g, recipe, found)
-
-    def _combined(self, g: SolvedGeometry, recipe: solved.Recipe, regions: Sequence[Region]) -> list[Piece]:
-        sharp = recipe.words.get("corners") != "round"
-        region = regions[0]
-        match recipe.kind:
-            case "offset":
-                result = offset(region, recipe.numbers["distance"], sharp)
-                if len(result.faces) > len(region.faces):
-                    self.notes.append(notes.splits(g, recipe, len(result.faces)))
-            case "shell":
-                wall = max(recipe.numbers["thickness"], 0.0)
-                inner = offset(region, -wall, sharp)
-                result = without(region, inner) if inner else region
-                if not inner:
-                    self.notes.append(notes.all_wall(g, recipe, _deepest(region, wall)))
-            case "union":
-                result = united(*regions)
-            case "difference":
-                result = without(*regions)
-            case _:
-                result = reduce(common, regions)
-        is_gone = not result and recipe.kind == "offset"
-        depth = _deepest(region, -recipe.numbers["distance"]) if is_gone else None
-        return self._left(g, recipe, result.pieces, depth)
 
     # --- Finished corners --------------------------------------------------------------------------
 
@@ -386,18 +378,15 @@ def clipped_ink(geometry: Sequence[SolvedGeometry], region: Region) -> list[Solv
     found = clipped_each([c for _, c in leaves], region, with_border=True)
     kept = {id(g): (c, one) for (g, c), one in zip(leaves, found, strict=True)}
 
-    def parts(g: SolvedGeometry, pieces: Sequence[Piece]) -> tuple[SolvedGeometry, ...]:
-        return tuple(as_geometry(f"edges[{k}]", g, piece) for k, piece in enumerate(pieces))
-
     def inner(g: SolvedGeometry) -> SolvedGeometry:
         if (g.filled or is_filled(g, "drawing")) and not all(
             kept[id(leaf)][1].is_whole for leaf, _ in _leaves(g)
         ):
-            return replace(g, curve=None, parts=parts(g, common(_region([g]), region).pieces))
+            return replace(g, curve=None, parts=solved.edges_of(g, common(_region([g]), region).pieces))
         curve, one = kept.get(id(g), (None, None))
         if one is None or one.inner == (curve,):
             return replace(g, parts=tuple(map(inner, g.parts)))
-        return replace(g, curve=None, parts=parts(g, one.inner))
+        return replace(g, curve=None, parts=solved.edges_of(g, one.inner))
 
     return [g if g.construction else inner(g) for g in geometry]
 

@@ -9,21 +9,13 @@ from functools import partial
 from typing import TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from aidl_lang.building.expression import exact_turn
 from aidl_lang.common.diagnostics import Diagnostic, ordered
 from aidl_lang.common.records import record
 from aidl_lang.geometry.boolean import Contacts, clipped_each, common, without
-from aidl_lang.geometry.curves import (
-    NO_LENGTH,
-    Bounds,
-    Floats,
-    Piece,
-    are_near,
-    inward,
-    larger_side,
-    union_bounds,
-)
+from aidl_lang.geometry.curves import NO_LENGTH, Bounds, Piece, are_near, inward, larger_side, union_bounds
 from aidl_lang.geometry.drawing import SLIT, Body, Drawing, Seam, Stroke
 from aidl_lang.geometry.legibility import Holders, owner
 from aidl_lang.geometry.notes import united_notes
@@ -163,23 +155,14 @@ class Part:
         )
 
 
-def parts_of(root: SolvedStructure, drawing: Drawing) -> tuple[list[Part], list[Stroke]]:
+def parts_of(drawing: Drawing) -> tuple[list[Part], list[Stroke]]:
     """Returns the parts, each turned as its own frame is, and what drawings have beside all of them."""
     on, off = engraved(drawing.bodies, drawing.strokes)
-    turns = dict(_turns(root, 0.0, 1.0))
     found = [
-        part.moved(Motion(-turn)) if (turn := turns[part.body.path] % 360.0) else part
+        part.moved(Motion(-turn)) if (turn := part.body.style.turn.own) else part
         for part in _parts(drawing, on)
     ]
     return found, off
-
-
-def _turns(s: SolvedStructure, turn: float, sense: float) -> Iterator[tuple[str, float]]:
-    """Yields the path of each structure, in one that is turned, and how far it is turned, degrees."""
-    turn += sense * s.frame.rotation
-    yield s.path, turn
-    for child in s.structures:
-        yield from _turns(child, turn, -sense if s.frame.mirrored else sense)
 
 
 def _parts(drawing: Drawing, on: dict[str, list[Stroke]]) -> Iterator[Part]:
@@ -282,7 +265,7 @@ def smallest_size(part: Part) -> Size:
 # World axes: x to the right, y to the back, z up, mm. `top` is drawn in x and y and grows up from there,
 # `front` in x and z and grows to the back, `side` in y and z and grows to the right.
 
-Matrix = Floats
+Matrix = NDArray[np.float64]
 
 _UP: Matrix = np.array((0.0, 0.0, 1.0))
 _RIGHT: Matrix = np.array((1.0, 0.0, 0.0))

@@ -26,7 +26,7 @@ from aidl_lang.geometry import curves, solved
 from aidl_lang.geometry.boolean import stencilled, united_character
 from aidl_lang.geometry.curves import LARGEST, Bounds, Curve, Vec
 from aidl_lang.geometry.drawing import Drawing, Findings, draw
-from aidl_lang.geometry.faces import edge_of, parts_of
+from aidl_lang.geometry.faces import as_edges, parts_of
 from aidl_lang.geometry.notes import unusable_note
 from aidl_lang.geometry.solved import Scalar, SolvedGeometry, SolvedModel, SolvedStructure, Values, described
 from aidl_lang.solver.problem import Solution
@@ -95,7 +95,10 @@ def read_out(
         u: float(v) for u, v in zip(lowered.unknowns, solution.values, strict=True)
     }
     evaluator = Evaluator(values)
-    changed = tuple(_changes(lowered, solution))
+    changed = tuple(
+        solved.Change(u.path, u.guess, values[u], u.holder.span, u.description, u.is_size)
+        for u in map(lowered.unknowns.__getitem__, solution.changed)
+    )
     reports = tuple(_reports(model, lowered, solution))
     root = _Reader(model, evaluator).structure(model.root)
     readings = tuple(dict.fromkeys(solved.Reading(span, text) for span, text in model.readings))
@@ -107,13 +110,19 @@ def _mobility(
     model: Model, lowered: Lowered, solution: Solution, freedom: Callable[[], Freedom]
 ) -> solved.Mobility:
     found = freedom()
+
+    def ways() -> tuple[solved.Motion, ...]:
+        from aidl_lang.geometry.freedom import motions
+
+        return motions(model, lowered, solution, found)
+
     each = zip(model.root.walk(), found.group_degrees, found.states, strict=True)
     return solved.Mobility(
         found.degrees,
         tuple(lowered.unknowns[i].path for i in found.free),
         tuple(_floating(lowered, found)),
         {structure.path: (degrees, str(state)) for structure, degrees, state in each},
-        Later(partial(_motions, model, lowered, solution, found)),
+        Later(ways),
     )
 
 
@@ -129,15 +138,6 @@ def _literal(model: Model, finish: Finish) -> ast.Number | None:
     return node if isinstance(node, ast.Number) and finish.span.overlaps(node.span) else None
 
 
-def _motions(
-    model: Model, lowered: Lowered, solution: Solution, freedom: Freedom
-) -> tuple[solved.Motion, ...]:
-    """Returns the motions that are left, by code that is loaded when it is needed."""
-    from aidl_lang.geometry.freedom import motions
-
-    return motions(model, lowered, solution, freedom)
-
-
 def _floating(lowered: Lowered, freedom: Freedom) -> Iterator[str]:
     """Yields the paths of structures with guessed values that no constraint ties to what is around them."""
     guessed: set[tuple[int, int]] = set()
@@ -147,13 +147,6 @@ def _floating(lowered: Lowered, freedom: Freedom) -> Iterator[str]:
     for group in freedom.loose:
         if (group, 0) in guessed and (group, 1) in guessed:
             yield lowered.groups[group]
-
-
-def _changes(lowered: Lowered, solution: Solution) -> Iterator[solved.Change]:
-    for index in solution.changed:
-        unknown = lowered.unknowns[index]
-        value, span = float(solution.values[index]), unknown.holder.span
-        yield solved.Change(unknown.path, unknown.guess, value, span, unknown.description, unknown.is_size)
 
 
 def _reports(model: Model, lowered: Lowered, solution: Solution) -> Iterator[solved.ConstraintReport]:
@@ -291,9 +284,7 @@ class _Reader:
         is_plain = not g.is_compound and not g.is_drawn_later and g.type != "point"
         curve = self._curve(g) if is_plain else None
         if is_plain and curve is None:
-            parts = tuple(
-                edge_of(g, f"edge[{i}]", _through(points)) for i, points in enumerate(self._pieces(g))
-            )
+            parts = as_edges(g, map(_through, self._pieces(g)))
         else:
             parts = tuple(self.geometry(part) for part in own_geometry(g.parts, g))
         return self._solved(g, self._own_values(g, curve), parts, curve, recipe)
@@ -361,7 +352,6 @@ class _Reader:
         return self.place(self.evaluate(x), self.evaluate(y), owner)
 
     def _direction(self, g: Geometry) -> float:
-        """Returns the angle of an ellipse or a text in the frame of the root, in degrees."""
         return self._number(translate("angle", g.fields["angle"], g.owner, self.model.root))
 
     def _number(self, value: Value) -> float:
@@ -376,7 +366,6 @@ class _Reader:
         return self._values(g.recipe.numbers if g.recipe and g.is_drawn_later else g.fields, g.owner)
 
     def _values(self, values: Mapping[str, NameBinding], owner: Structure) -> Values:
-        """Returns the numbers and points among values of `owner`."""
         found: Values = {}
         for name, value in values.items():
             if isinstance(value, PointVal):
@@ -424,12 +413,9 @@ def _glyph(
     checkpoint()
     outline = glyph.curves if glyph.is_nested else united_character(glyph.curves)
     outline = stencilled(outline, bridge) if bridge else outline
-    edges = tuple(
-        edge_of(text, f"{name}.edge[{i}]", _through([at(p) for p in c])) for i, c in enumerate(outline)
-    )
-    path, filled = f"{text.path}.{name}", text.filled
-    made = SolvedGeometry(name, path, "glyph", {}, None, edges, text.construction, text.span, filled=filled)
-    return replace(made, stroked=glyph.is_stroked)
+    edges = as_edges(text, (_through([at(p) for p in c]) for c in outline), f"{name}.")
+    known = name, f"{text.path}.{name}", "glyph", Values(), None, edges, text.construction, text.span
+    return SolvedGeometry(*known, filled=text.filled, stroked=glyph.is_stroked)
 
 
 def _through(points: Sequence[Vec]) -> curves.Line | curves.Bezier:

@@ -6,7 +6,6 @@ import math
 from collections.abc import Callable
 from dataclasses import field
 from functools import cache, cached_property
-from itertools import pairwise
 
 import numpy as np
 
@@ -268,10 +267,6 @@ Polygon = Floats
 
 COARSE = 0.05
 """Millimetres from an outline to the polygon that stands for it where places are sought."""
-COARSEST = math.tau / 16
-"""Largest angle of a chord, so that a hole much smaller than the tolerance is still round."""
-SLACK = 1e-9
-"""Slack in a count of chords, so that rounding does not choose how many there are."""
 _FINER, _ROUNDS = 16, 4
 
 
@@ -299,22 +294,7 @@ def polygon_area(polygon: Polygon) -> float:
 
 
 def _from_start(piece: Piece, tolerance: float) -> Polygon:
-    count = _chords(piece, tolerance)
+    count = piece.chords(tolerance)
     found = piece.points(np.arange(count) / count)
     found[0] = piece.ends[0]
     return found
-
-
-def _chords(piece: Piece, tolerance: float) -> int:
-    """Returns how many chords keep the tolerance: for a curve at least two, so that it does not fall flat."""
-    if isinstance(piece, Line):
-        return 1
-    if isinstance(piece, Bezier):
-        # C''/6 runs straight from one second difference of the control points to the other.
-        corners = (piece.p0, piece.p1, piece.p2, piece.p3)
-        sides = [(q[0] - p[0], q[1] - p[1]) for p, q in pairwise(corners)]
-        bend = 6 * max(math.dist(a, b) for a, b in pairwise(sides))
-        return max(3, math.ceil(math.sqrt(bend / (8 * tolerance)) - SLACK))
-    _, rx, ry, *_, sweep = piece.frame
-    step = min(COARSEST, 4 * math.asin(math.sqrt(min(1.0, tolerance / (2 * max(rx, ry))))))
-    return max(2, math.ceil(abs(sweep) / step - SLACK))

@@ -265,7 +265,6 @@ def faces_of(loops: list[tuple[float, Loop]]) -> list[Face]:
 
 
 def _holders(outers: list[Loop], holes: list[Loop]) -> list[int]:
-    """Returns for each hole the first outer loop that it lies in."""
     if len(outers) == 1 or not holes:
         return [0] * len(holes)
     holder = np.full(len(holes), -1)

@@ -21,7 +21,6 @@ from aidl_lang.geometry.drawing import Drawing, Stroke
 from aidl_lang.geometry.parts import Motion, Part, Size, drawn, gathered, parts_of, upright_turn
 from aidl_lang.geometry.region import COARSE, Polygon, polygon_area
 from aidl_lang.geometry.sections import widened
-from aidl_lang.geometry.solved import SolvedStructure
 
 if TYPE_CHECKING:
     from spyrrow import Item
@@ -142,7 +141,6 @@ def _box(outline: Polygon) -> Bounds:
 
 
 def _turns(box: Bounds, sheet: tuple[float, float]) -> list[float]:
-    """Returns the quarter turns in which an outline fits, degrees."""
     width, height = box[2] - box[0], box[3] - box[1]
     upright = [0.0, 180.0] if width <= sheet[0] and height <= sheet[1] else []
     lying = [90.0, 270.0] if height <= sheet[0] and width <= sheet[1] else []
@@ -183,15 +181,13 @@ class Layout:
     oversize: tuple[tuple[str, Size], ...] = ()
 
 
-def laid_out(
-    root: SolvedStructure, drawing: Drawing, sheet: Size, spacing: float = SPACING, nest: float | None = None
-) -> Layout:
+def laid_out(drawing: Drawing, sheet: Size, spacing: float = SPACING, nest: float | None = None) -> Layout:
     """Returns all bodies, each as often as it is to be made, on as few sheets as the packer finds, those of
     one stock together (sizes in mm).
 
     They are packed by their boxes and, for `nest` seconds, by their outlines; what uses less is taken.
     """
-    found, off = parts_of(root, drawing)
+    found, off = parts_of(drawing)
     gap = _ceil(spacing)
     room = _floor(sheet[0]) - gap, _floor(sheet[1]) - gap
     fitting = [_fitting(part, room, gap) for part in found]

@@ -409,6 +409,11 @@ def as_geometry(name: str, of: SolvedGeometry, curve: Piece, around: str = "") -
     return SolvedGeometry(name, path, kind, values, curve, (), False, of.span)
 
 
+def edges_of(of: SolvedGeometry, curves: Iterable[Piece]) -> tuple[SolvedGeometry, ...]:
+    """Returns curves as the parts of a geometry."""
+    return tuple(as_geometry(f"edges[{k}]", of, curve) for k, curve in enumerate(curves))
+
+
 def described(curve: Piece) -> tuple[str, Values]:
     """Returns the type and the fields of a curve."""
     if isinstance(curve, Bezier):

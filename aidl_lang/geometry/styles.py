@@ -49,6 +49,11 @@ class Turn:
         own = frame.rotation + (180.0 if frame.mirrored else 0.0)
         return Turn(self.first + self.sense * own, -self.sense if frame.mirrored else self.sense)
 
+    @property
+    def own(self) -> float:
+        """How far the structure is turned, from 0 up to 360, whether or not it is mirrored first."""
+        return (self.first if self.sense > 0 else self.first + 180.0) % 360.0
+
     def of(self, angle: float) -> float:
         """Returns the direction of an angle of the structure, from -180 up to 180."""
         return (self.first + self.sense * angle + 180.0) % 360.0 - 180.0
@@ -350,20 +355,15 @@ def idle_orders(root: SolvedStructure, bodies: Collection[str]) -> list[Diagnost
         parts = {s.name for s in around.structures if s.kind != "drawing" and s.path not in bodies}
         for s in around.structures if around.kind == "solid" else ():
             for name in STACKING if s.kind == "drawing" else ():
-                if united := [part for part in map(str, s.attributes.get(name, ())) if part in parts]:
-                    found.append(_idle(s, name, united, around))
+                united = [part for part in map(str, s.attributes.get(name, ())) if part in parts]
+                what = f"{named(united, 3)} {'is' if len(united) == 1 else 'are'}"
+                message = f"`@{name}` of `{s.path}` counts for nothing: {what} one body with `{around.path}`"
+                hints = (_REMEDY.format(around.name),)
+                if united:
+                    found.append(
+                        Diagnostic("W0727", message, s.span, "drawn on all of that body", hints=hints)
+                    )
     return found
-
-
-def _idle(s: SolvedStructure, name: str, united: list[str], body: SolvedStructure) -> Diagnostic:
-    are = "is" if len(united) == 1 else "are"
-    return Diagnostic(
-        "W0727",
-        f"`@{name}` of `{s.path}` counts for nothing: {named(united, 3)} {are} one body with `{body.path}`",
-        s.span,
-        "drawn on all of that body",
-        hints=(_REMEDY.format(body.name),),
-    )
 
 
 def _ordered(beside: Sequence[SolvedStructure]) -> Sequence[SolvedStructure]:

@@ -15,7 +15,7 @@ from aidl_lang.common.prose import did_you_mean, first_few, ticked
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
 from aidl_lang.geometry.boolean import Contact, region_distance
-from aidl_lang.geometry.curves import Bezier, Bounds, Circle, Ellipse, Line, Piece, Vec
+from aidl_lang.geometry.curves import Bezier, Bounds, Line, Piece, Vec
 from aidl_lang.geometry.drawing import Body, Drawing, region_alone
 from aidl_lang.geometry.region import Region, measure
 from aidl_lang.geometry.solved import SolvedModel
@@ -23,10 +23,10 @@ from aidl_lang.geometry.walls import widths
 
 # --- Second moments of area of a region, from its exact pieces.
 #
-# They are integrals along the outline: of straight lines, whole circles and whole ellipses in closed form,
-# of all others by Gauss-Legendre quadrature. With twelve nodes it is exact for Bézier curves (whose
-# integrand is a polynomial of degree 11) and exact to rounding for a quarter of a circle or an ellipse; the
-# closed form of an arc would lose all digits where the arc is shallow and its radius large.
+# They are integrals along the outline: of straight lines in closed form, of all others by Gauss-Legendre
+# quadrature. With twelve nodes it is exact for Bézier curves (whose integrand is a polynomial of degree 11)
+# and exact to rounding for a quarter of a circle or an ellipse; the closed form of an arc would lose all
+# digits where the arc is shallow and its radius large.
 
 _ISOTROPIC = 1e-9
 """Difference of the principal moments, relative to them, below which every axis is a principal one."""
@@ -83,45 +83,19 @@ def inertia(region: Region, centroid: Vec) -> Inertia:
 
 
 def _piece_squares(piece: Piece, origin: Vec) -> Squares:
-    """Returns the second moments of the triangle fan from the origin to the piece."""
-    match piece:
-        case Line(start, end):
-            return _triangle(
-                (start[0] - origin[0], start[1] - origin[1]), (end[0] - origin[0], end[1] - origin[1])
-            )
-        case Circle(center, r):
-            return _whole_ellipse(Ellipse(center, r, r, 0.0), origin)
-        case Ellipse():
-            return _whole_ellipse(piece, origin)
-        case _:
-            return _curved(piece, origin)
-
-
-def _triangle(p: Vec, q: Vec) -> Squares:
-    a = (p[0] * q[1] - p[1] * q[0]) / 12
-    return (
-        a * (p[0] * p[0] + p[0] * q[0] + q[0] * q[0]),
-        a * (p[1] * p[1] + p[1] * q[1] + q[1] * q[1]),
-        a * (p[0] * p[1] + (p[0] * q[1] + q[0] * p[1]) / 2 + q[0] * q[1]),
-    )
-
-
-def _whole_ellipse(e: Ellipse, origin: Vec) -> Squares:
-    a = math.pi * e.rx * e.ry
-    u, v = a * e.rx * e.rx / 4, a * e.ry * e.ry / 4
-    c, s = math.cos(e.angle), math.sin(e.angle)
-    dx, dy = e.center[0] - origin[0], e.center[1] - origin[1]
-    return (
-        c * c * u + s * s * v + dx * dx * a,
-        s * s * u + c * c * v + dy * dy * a,
-        c * s * (u - v) + dx * dy * a,
-    )
-
-
-def _curved(piece: Piece, origin: Vec) -> Squares:
-    """Integrals of (p × p') times a quarter of x², y² and xy."""
+    """Returns the second moments of the triangle fan from the origin to the piece: integrals of (p × p')
+    times a quarter of x², y² and xy.
+    """
+    if isinstance(piece, Line):
+        px, py, qx, qy = (end[k] - origin[k] for end in piece.ends for k in (0, 1))
+        a = (px * qy - py * qx) / 12
+        return (
+            a * (px * px + px * qx + qx * qx),
+            a * (py * py + py * qy + qy * qy),
+            a * (px * py + (px * qy + qx * py) / 2 + qx * qy),
+        )
     spans = 1
-    if not isinstance(piece, Line | Bezier):
+    if not isinstance(piece, Bezier):
         spans = max(1, math.ceil(abs(piece.range[1]) / (math.pi / 2) - 1e-9))
     xx = yy = xy = 0.0
     for k in range(spans):

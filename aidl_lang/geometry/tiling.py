@@ -238,7 +238,6 @@ def _reach(cell: Sequence[Piece], box: Bounds) -> tuple[Floats, Floats]:
 
 
 def _meet_each_other(cell: Region, lattice: Lattice) -> bool:
-    """Tells whether copies of an area touch or overlap."""
     left, bottom, right, top = cell.box
     near = RELATIVE_TOLERANCE * max(right - left, top - bottom)
     row = lattice.row or (0.0, 0.0)

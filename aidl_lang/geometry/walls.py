@@ -32,7 +32,6 @@ from aidl_lang.common.running import checkpoint
 from aidl_lang.geometry.boolean import piece_distance
 from aidl_lang.geometry.chords import ANGLE, Chords, Skeleton, chords, direction, joined, within
 from aidl_lang.geometry.curves import Arc, Circle, Floats, Line, Vec
-from aidl_lang.geometry.network import RELATIVE_TOLERANCE
 from aidl_lang.geometry.region import Region
 from aidl_lang.geometry.solved import SolvedStructure
 
@@ -74,16 +73,13 @@ def widths(region: Region) -> Widths:
     wall, gap = (
         _ChordSearch(outline, kind, [c for k, c in ends_of_tapers if k == kind]) for kind in (WALL, GAP)
     )
-    if _is_convex(outline):
-        gap.is_done = True
-    size = math.dist(outline.boxes[:, :2].min(axis=0), outline.boxes[:, 2:].max(axis=0))
-    if (touch := _touch(outline, RELATIVE_TOLERANCE * size)) is not None:
+    if (touch := _touch(outline)) is not None:
         wall.best, wall.is_done = Chord(0.0, touch, touch), True
-    reach = size / math.sqrt(len(outline))
+    reach = outline.size / math.sqrt(len(outline))
     while searches := [s for s in (wall, gap) if not s.is_done]:
-        limit = math.inf if reach >= size else reach - 2 * outline.error
+        limit = math.inf if reach >= outline.size else reach - 2 * outline.error
         useful = min(limit, max(s.bound for s in searches)) + 2 * outline.error
-        some = [c.where(c.length <= useful) for c in chords(outline, reach, RELATIVE_TOLERANCE * size)]
+        some = [c.where(c.length <= useful) for c in chords(outline, reach, outline.tolerance)]
         found = joined([c for c in some if len(c)] or some[:1])
         for search in searches:
             search.run(found, limit)
@@ -94,12 +90,11 @@ def widths(region: Region) -> Widths:
 def thin_wall(region: Region, least: float) -> Chord | None:
     """Returns the thinnest wall of a region as `widths` has it, if it is shorter than `least`."""
     outline = Skeleton(region)
-    size = math.dist(outline.boxes[:, :2].min(axis=0), outline.boxes[:, 2:].max(axis=0))
-    if (touch := _touch(outline, RELATIVE_TOLERANCE * size)) is not None:
+    if (touch := _touch(outline)) is not None:
         return Chord(0.0, touch, touch)
     search = _ChordSearch(outline, WALL, [c for kind, c in _tapers(outline) if kind == WALL])
     reach = least + 2 * outline.error
-    for found in chords(outline, reach, RELATIVE_TOLERANCE * size):
+    for found in chords(outline, reach, outline.tolerance):
         search.run(found, reach)
     wall = search.best or search.tip
     return wall if wall is not None and wall.length < least else None
@@ -138,28 +133,18 @@ class _ChordSearch:
         self.is_done = self.bound <= limit
 
 
-def _touch(o: Skeleton, tolerance: float) -> Vec | None:
+def _touch(o: Skeleton) -> Vec | None:
     """Returns a place where two parts of the outline meet that do not follow each other."""
-    for found in chords(o, tolerance + 2 * o.error, -1.0):
+    for found in chords(o, o.tolerance + 2 * o.error, -1.0):
         slack = np.where(o.free[found.i] | o.free[found.j], 2 * o.error, 0.0)
-        close = found.where(found.length <= tolerance + slack)
+        close = found.where(found.length <= o.tolerance + slack)
         for i, j in zip(o.piece[close.i], o.piece[close.j], strict=True):
             ours = {int(i), o.after[i]}
             if ours.isdisjoint((int(j), o.before[j], o.after[j])):
                 distance, p, _ = piece_distance(o.pieces[i], o.pieces[j])
-                if distance <= tolerance:
+                if distance <= o.tolerance:
                     return p
     return None
-
-
-def _is_convex(outline: Skeleton) -> bool:
-    """Tells whether the outline is one loop that turns to the left only: beside it there is no gap."""
-    whole = [p.is_closed for p in outline.pieces]
-    return bool(
-        np.all((outline.side > 0) | (outline.half < ANGLE))
-        and (whole == [True] or not any(whole))
-        and outline.after == [*range(1, len(outline.pieces)), 0]
-    )
 
 
 # --- Chords that end on free curves --------------------------------------------------------------

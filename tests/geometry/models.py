@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
-from aidl_lang.common.source import Span
-from aidl_lang.geometry.curves import Arc, Circle, Curve, Line, Vec, union_bounds
+from aidl_lang.geometry.curves import Arc, Circle, Curve, Line, Vec
 from aidl_lang.geometry.solved import (
     Box,
     Frame,
@@ -27,11 +27,9 @@ def arc(center: Vec, radius: float, first: float, last: float) -> Arc:
     return Arc(center, radius, at(first), at(last), math.radians(last - first))
 
 
-def primitive(
-    name: str, curve: Curve, construction: bool = False, span: Span | None = None
-) -> SolvedGeometry:
+def primitive(name: str, curve: Curve, construction: bool = False) -> SolvedGeometry:
     kind, values = described(curve)
-    return SolvedGeometry(name, name, kind, values, curve, (), construction, span)
+    return SolvedGeometry(name, name, kind, values, curve, (), construction, None)
 
 
 def compound(name: str, *curves: Curve, type_: str = "polygon") -> SolvedGeometry:
@@ -56,19 +54,14 @@ def structure(
     kind: str,
     name: str,
     *members: SolvedGeometry | SolvedStructure,
-    span: Span | None = None,
     box: Box | None = None,
     **attributes: tuple[Scalar, ...],
 ) -> SolvedStructure:
     geometry = tuple(m for m in members if isinstance(m, SolvedGeometry))
     children = tuple(m for m in members if isinstance(m, SolvedStructure))
-    boxes = [c.box for g in geometry for c in g.curves()]
-    boxes += [(c.box.left, c.box.bottom, c.box.right, c.box.top) for c in children if c.box]
-    box = box or (Box(*union_bounds(boxes)) if boxes else None)
-    frame = Frame(0.0, 0.0, 0.0)
-    return SolvedStructure(
-        name, name, kind, "top", frame, attributes, {}, geometry, children, box, not members, span
-    )
+    box = box or Box.around((c for g in geometry for c in g.curves()), children)
+    known = attributes, {}, geometry, children, box, not members, None
+    return SolvedStructure(name, name, kind, "top", Frame(0.0, 0.0, 0.0), *known)
 
 
 def model(root: SolvedStructure) -> SolvedModel:
@@ -76,8 +69,6 @@ def model(root: SolvedStructure) -> SolvedModel:
 
 
 def _with_paths(s: SolvedStructure, prefix: str) -> SolvedStructure:
-    from dataclasses import replace
-
     path = f"{prefix}{s.name}"
 
     def below(g: SolvedGeometry, prefix: str) -> SolvedGeometry:

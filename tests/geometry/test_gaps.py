@@ -6,13 +6,9 @@ import math
 
 import pytest
 
-from aidl_lang import pipeline
-from aidl_lang.common.diagnostics import Diagnostic
-from aidl_lang.common.source import SourceFile
-from aidl_lang.common.world import MemoryWorld
-from aidl_lang.geometry.curves import Arc, Bezier, Circle, Line
-from aidl_lang.geometry.region import Region
-from aidl_lang.pipeline import Compiled
+from aidl_lang.geometry.curves import Bezier, Circle, Line
+from tests.compiled import compiled
+from tests.geometry.test_regions import assert_closed
 
 WEDGE = """\
 solid wedge {
@@ -23,27 +19,8 @@ solid wedge {
 """
 
 
-def compiled(text: str) -> Compiled:
-    return pipeline.compile(SourceFile("x.aidl", text), MemoryWorld({}))
-
-
-def notes(result: Compiled) -> list[Diagnostic]:
-    return [d for d in result.diagnostics if d.code == "N0708"]
-
-
 def codes(text: str) -> list[str]:
     return [d.code for d in compiled(text).diagnostics]
-
-
-def region(result: Compiled, path: str) -> Region:
-    assert result.drawing is not None
-    return result.drawing.regions[path]
-
-
-def assert_closed(found: Region) -> None:
-    for loop in found.loops:
-        for one, after in zip(loop.pieces, loop.pieces[1:] + loop.pieces[:1], strict=True):
-            assert loop.is_whole or one.ends[1] == after.ends[0]
 
 
 @pytest.mark.parametrize(
@@ -78,17 +55,17 @@ def test_curves_of_every_kind_stay_what_they_are():
         }
         """
     )
-    assert [note.message.partition(" was")[0] for note in notes(result)] == [
+    notes = [d.message for d in result.diagnostics if d.code == "N0708"]
+    assert [note.partition(" was")[0] for note in notes] == [
         "a gap of 0.0122 mm between `cap.start` and `base.end` at (40, 0)",
         "a gap of 0.0122 mm between `cap.end` and `base.start` at (0, 0)",
         "a gap of 0.01414 mm between `leaf.p3` and `leaf.p0` at (10, 5)",
         "a gap of 0.003491 mm between `bore.end` and `bore.start` at (32, 5)",
     ]
-    found = region(result, "s")
+    found = result.drawing.regions["s"]
     assert_closed(found)
     line, arc = found.faces[0].outer.pieces
     assert line == Line((0, 0), (40, 0))
-    assert isinstance(arc, Arc)
     for end in (arc.start, arc.end):
         assert math.dist(end, arc.center) == pytest.approx(arc.radius, abs=1e-12)
     kinds = {type(piece) for loop in found.faces[0].holes for piece in loop.pieces}
@@ -110,5 +87,5 @@ def test_overshooting_ends_are_trimmed_without_a_word():
         }
         """
     )
-    assert not notes(result)
-    assert region(result, "s").area == pytest.approx(400, abs=1e-2)
+    assert not result.diagnostics
+    assert result.drawing.regions["s"].area == pytest.approx(400, abs=1e-2)

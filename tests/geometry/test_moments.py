@@ -10,25 +10,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, EllipseArc, Line, Vec, inward
+from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, EllipseArc, Line, inward
 from aidl_lang.geometry.region import Face, Loop, Region, measure
 from aidl_lang.geometry.survey import Inertia, inertia
 from tests.amount import tries
 
 
-def polygon(*corners: Vec) -> Loop:
-    return Loop(tuple(Line(p, q) for p, q in zip(corners, corners[1:] + corners[:1], strict=True)))
-
-
-def rectangle(left: float, bottom: float, right: float, top: float) -> Loop:
-    return polygon((left, bottom), (right, bottom), (right, top), (left, top))
-
-
-def of(outer: Loop, *holes: Loop) -> Inertia:
-    return of_region(Region((Face(outer, holes),)))
-
-
-def of_region(region: Region) -> Inertia:
+def of(region: Region | Loop) -> Inertia:
+    region = region if isinstance(region, Region) else Region((Face(region),))
     return inertia(region, measure(region).centroid)
 
 
@@ -76,10 +65,13 @@ def test_a_shallow_arc_of_a_large_circle_loses_nothing():
     assert numbers(of(loop)) == pytest.approx((2 / 3, 1 / 6, 0), rel=1e-5, abs=1e-9)
 
 
+SQUARE = ((0.5, -0.5), (0.5, 0.5), (-0.5, 0.5), (-0.5, -0.5))
+
+
 @pytest.mark.parametrize("distance", [3.0, 1e6])
 def test_faces_that_lie_apart_go_by_the_parallel_axis_theorem(distance: float):
-    squares = tuple(Face(rectangle(x - 0.5, -0.5, x + 0.5, 0.5)) for x in (-distance, distance))
-    found = of_region(Region(squares))
+    edges = [[Line((x + p, q), (x - q, p)) for p, q in SQUARE] for x in (-distance, distance)]
+    found = of(Region(tuple(Face(Loop(tuple(square))) for square in edges)))
     assert found.yy == pytest.approx(2 / 12 + 2 * distance**2, rel=1e-12)
     assert found.xx == pytest.approx(2 / 12, rel=1e-6)
 
@@ -131,7 +123,7 @@ def by_polygons(region: Region, count: int = 3000) -> NDArray[np.float64]:
 def test_random_outlines_as_fine_polygons(region: Region):
     area, mx, my, xx, yy, xy = by_polygons(region)
     expected = xx - my * my / area, yy - mx * mx / area, xy - mx * my / area
-    found = of_region(region)
+    found = of(region)
     assert numbers(found) == pytest.approx(expected, rel=1e-5, abs=1e-5 * found.polar)
 
 
@@ -149,7 +141,7 @@ def test_a_moved_and_mirrored_outline_has_the_same_moments(
         return Loop(pieces, loop.reversed ^ whole)
 
     there = Region(tuple(Face(moved(f.outer), tuple(map(moved, f.holes))) for f in region.faces))
-    here, found = of_region(region), of_region(there)
+    here, found = of(region), of(there)
     assert found.polar == pytest.approx(here.polar, rel=1e-9)
     assert found.principal == pytest.approx(here.principal, rel=1e-9)
     difference = (here.xx - here.yy) / 2, -here.xy

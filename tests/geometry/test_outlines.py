@@ -84,7 +84,6 @@ def test_fillets_of_free_curves_are_tangent() -> None:
     made = finish(curves, [Work("fillet", c, (2, 2)) for c in corners_of(curves, 1e-6)])
     assert len(made.finished) == 3
     for f in made.finished:
-        assert isinstance(f.piece, Arc)
         for t, arm, cut in zip((0.0, 1.0), f.work.corner.arms, f.cuts, strict=True):
             p = arm.curve.point(cut)
             assert math.dist(p, f.piece.center) == pytest.approx(2, abs=1e-9)

@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from shapely.geometry import Polygon
 
-from aidl_lang.geometry.curves import Arc, Bezier, Circle, Ellipse, EllipseArc, Line
+from aidl_lang.geometry.curves import Bezier, Circle, Ellipse, Line
 from aidl_lang.geometry.drawing import Drawing, draw
 from aidl_lang.geometry.region import Loop, Region, measure
 from aidl_lang.geometry.solved import SolvedGeometry, SolvedStructure
@@ -59,55 +59,58 @@ def assert_closed(region: Region) -> None:
                 assert one.ends[1] == after.ends[0]
 
 
-def test_ellipses_and_beziers_are_split_exactly():
-    bump = Bezier((0, 0), (0, 8), (10, 8), (10, 0))
-    region = region_of(
-        compound("dome", bump, Line((10, 0), (0, 0))), structure("hole", "h", rectangle("r", 5, -1, 20, 20))
-    )
-    assert len(pieces(region, Bezier)) == 1
-    assert measure(region).area == pytest.approx(
-        measure(region_of(compound("d", bump, Line((10, 0), (0, 0))))).area / 2
-    )
-    half = region_of(
-        primitive("e", Ellipse((0, 0), 6, 2, 0)), structure("hole", "h", rectangle("r", 0, -9, 9, 9))
-    )
-    assert len(pieces(half, EllipseArc)) == 1
-    assert measure(half).area == pytest.approx(6 * math.pi, rel=1e-9)
+def hole(shape: SolvedGeometry) -> SolvedStructure:
+    return structure("hole", f"hole_{shape.name}", shape)
 
 
-def test_tangent_circles_and_inscribed_circle():
-    inscribed = region_of(rectangle("r", -5, -5, 5, 5), structure("hole", "h", circle("c", 0, 0, 5)))
-    assert measure(inscribed).area == pytest.approx(100 - 25 * math.pi, rel=1e-9)
-    assert not codes(structure("solid", "s", circle("a", 0, 0, 5), circle("b", 10, 0, 5)))
-    inner = region_of(circle("a", 0, 0, 10), structure("hole", "h", circle("b", 1, 0, 9)))
-    assert measure(inner).area == pytest.approx(19 * math.pi, rel=1e-9)
-    assert all(isinstance(p, Arc | Circle) for loop in inner.loops for p in loop.pieces)
-
-
-def test_coincident_arcs_of_one_circle():
-    """A disc with a sector of the same circle cut out: no slivers along the common arc."""
-    wedge = compound("w", Line((0, 0), (5, 0)), arc((0, 0), 5, 0, 90), Line((0, 5), (0, 0)))
-    region = region_of(circle("disc", 0, 0, 5), structure("hole", "h", wedge))
-    assert measure(region).area == pytest.approx(0.75 * 25 * math.pi, rel=1e-12)
-    assert sorted(type(p).__name__ for p in region.faces[0].outer.pieces) == ["Arc", "Line", "Line"]
-    assert len(region.loops) == 1
-
-
-# -- chaining ----------------------------------------------------------------------------------------------
-
-SIDES = [
+DOME = compound("dome", Bezier((0, 0), (0, 8), (10, 8), (10, 0)), Line((10, 0), (0, 0)))
+WEDGE = compound("wedge", Line((0, 0), (5, 0)), arc((0, 0), 5, 0, 90), Line((0, 5), (0, 0)))
+CHAIN = [
     primitive("bottom", Line((0, 0), (10, 0))),
-    primitive("right", Line((10, 6), (10, 0))),
+    primitive("right", Line((10 + 4e-6, 6), (10, 4e-6))),
     primitive("top", arc((5, 6), 5, 0, 180)),
     primitive("left", Line((0, 6), (0, 0))),
 ]
+CLOSED_FORMS = {
+    "half a dome": (24, "Bezier Line Line", DOME, hole(rectangle("r", 5, -1, 20, 20))),
+    "half an ellipse": (
+        6 * math.pi,
+        "EllipseArc Line",
+        primitive("e", Ellipse((0, 0), 6, 2, 0)),
+        hole(rectangle("r", 0, -9, 9, 9)),
+    ),
+    "inscribed circle": (100 - 25 * math.pi, "", rectangle("r", -5, -5, 5, 5), hole(circle("c", 0, 0, 5))),
+    "circle that touches": (19 * math.pi, "Circle Circle", circle("a", 0, 0, 10), hole(circle("b", 1, 0, 9))),
+    "sector of a disc": (0.75 * 25 * math.pi, "Arc Line Line", circle("disc", 0, 0, 5), hole(WEDGE)),
+    "gaps below the tolerance": (60 + 12.5 * math.pi, "Arc Line Line Line", *CHAIN),
+    "far from the origin": (
+        6 - math.pi / 4,
+        "",
+        rectangle("r", 1e6, 1e6, 1e6 + 3, 1e6 + 2),
+        hole(circle("c", 1e6 + 1, 1e6 + 1, 0.5)),
+    ),
+    "very small": (
+        6e-8 - math.pi * 25e-10,
+        "",
+        rectangle("r", 0, 0, 3e-4, 2e-4),
+        hole(circle("c", 1e-4, 1e-4, 5e-5)),
+    ),
+}
+"""The area of some regions, and the kinds of their pieces where they are but few."""
 
 
-def test_gaps_below_the_tolerance_are_closed():
-    nudged = primitive("right", Line((10 + 4e-6, 6), (10, 4e-6)))
-    region = region_of(SIDES[0], nudged, SIDES[2], SIDES[3])
-    assert measure(region).area == pytest.approx(60 + 12.5 * math.pi, rel=1e-5)
+@pytest.mark.parametrize("name", CLOSED_FORMS)
+def test_areas_have_their_closed_form(name: str):
+    area, kinds, *members = CLOSED_FORMS[name]
+    region = region_of(*members)
+    assert measure(region).area == pytest.approx(area, rel=1e-5 if "gaps" in name else 1e-8)
     assert_closed(region)
+    if kinds:
+        assert sorted(type(p).__name__ for p in region.pieces) == kinds.split()
+
+
+def test_circles_that_touch_are_told_nothing():
+    assert not codes(structure("solid", "s", circle("a", 0, 0, 5), circle("b", 10, 0, 5)))
 
 
 # -- holes and islands ---------------------------------------------------------------------------------------
@@ -154,12 +157,3 @@ def test_circles_closer_than_their_chords(turn: float):
     hole = circle("c", off * math.cos(turn), off * math.sin(turn), 12 - gap)
     region = region_of(circle("a", 0, 0, 12), structure("hole", "h", hole))
     assert [type(p) for loop in region.loops for p in loop.pieces] == [Circle, Circle]
-
-
-def test_far_from_the_origin_and_very_small():
-    far = region_of(
-        rectangle("r", 1e6, 1e6, 1e6 + 3, 1e6 + 2), structure("hole", "h", circle("c", 1e6 + 1, 1e6 + 1, 0.5))
-    )
-    assert measure(far).area == pytest.approx(6 - math.pi / 4, rel=1e-8)
-    tiny = region_of(rectangle("r", 0, 0, 3e-4, 2e-4), structure("hole", "h", circle("c", 1e-4, 1e-4, 5e-5)))
-    assert measure(tiny).area == pytest.approx(6e-8 - math.pi * 25e-10, rel=1e-8)

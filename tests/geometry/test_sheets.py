@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from dataclasses import replace
 from itertools import combinations
 
@@ -11,28 +12,16 @@ from hypothesis import given
 from hypothesis import strategies as st
 from shapely.geometry import Polygon, box
 
-from aidl_lang.geometry import sheets
 from aidl_lang.geometry.curves import Circle, Line, Piece
 from aidl_lang.geometry.drawing import Body, Drawing, draw
-from aidl_lang.geometry.sheets import Layout
+from aidl_lang.geometry.sheets import Layout, laid_out
 from aidl_lang.geometry.solved import SolvedStructure
 from tests.amount import tries
 from tests.geometry.models import arc, circle, compound, model, polygon, primitive, rectangle, structure
 
-_ROOTS: dict[int, tuple[Drawing, SolvedStructure]] = {}
-
 
 def drawing_of(*members: SolvedStructure) -> Drawing:
-    solved = model(structure("assembly", "part", *members))
-    drawing = draw(solved)[0]
-    _ROOTS[id(drawing)] = drawing, solved.root
-    return drawing
-
-
-def laid_out(
-    drawing: Drawing, sheet: tuple[float, float], spacing: float, nest: float | None = None
-) -> Layout:
-    return sheets.laid_out(_ROOTS[id(drawing)][1], drawing, sheet, spacing, nest)
+    return draw(model(structure("assembly", "part", *members)))[0]
 
 
 def shape(body: Body) -> Polygon:
@@ -42,14 +31,10 @@ def shape(body: Body) -> Polygon:
     return Polygon(outer, holes)
 
 
-def numbers(pieces: list[Piece]) -> list[complex]:
+def numbers(pieces: Iterable[Piece]) -> list[complex]:
     """Points that tell where curves lie: ends and middles, centres of circles."""
-    spots = [
-        p
-        for piece in pieces
-        for p in ([piece.center] if isinstance(piece, Circle) else [*piece.ends, piece.point(0.5)])
-    ]
-    return [complex(*p) for p in spots]
+    of = ([p.center] if isinstance(p, Circle) else [*p.ends, p.point(0.5)] for p in pieces)
+    return [complex(*spot) for spots in of for spot in spots]
 
 
 def motion(before: list[complex], after: list[complex]) -> tuple[complex, complex]:
@@ -60,10 +45,6 @@ def motion(before: list[complex], after: list[complex]) -> tuple[complex, comple
     shift = after[0] - factor * before[0]
     assert all(abs(factor * z + shift - w) < 1e-9 for z, w in zip(before, after, strict=True))
     return factor, shift
-
-
-def outline(body: Body) -> list[Piece]:
-    return [piece for loop in body.region.loops for piece in loop.pieces]
 
 
 def check(drawing: Drawing, layout: Layout, sheet: tuple[float, float], spacing: float) -> None:
@@ -78,7 +59,7 @@ def check(drawing: Drawing, layout: Layout, sheet: tuple[float, float], spacing:
         assert all(a.distance(b) >= spacing - 1e-6 for a, b in combinations(shapes, 2))
         assert len({(b.style.material, b.style.thickness) for b in laid.bodies}) == 1
         for body in laid.bodies:
-            old, new = outline(before[body.path]), outline(body)
+            old, new = before[body.path].region.pieces, body.region.pieces
             assert list(map(type, old)) == list(map(type, new))
             factor, _ = motion(numbers(old), numbers(new))
             assert min(abs(factor - 1j**k) for k in range(4)) < 1e-9  # turned by quarters; no mirror
@@ -89,36 +70,27 @@ def check(drawing: Drawing, layout: Layout, sheet: tuple[float, float], spacing:
 def parts(draw: st.DrawFn) -> SolvedStructure:
     w, h = draw(st.floats(2, 60)), draw(st.floats(2, 60))
     x, y = draw(st.floats(-500, 500)), draw(st.floats(-500, 500))
-    kind = draw(st.sampled_from(["rectangle", "triangle", "ell", "circle", "tongue"]))
-    geometry = {
-        "rectangle": lambda: rectangle("g", x, y, x + w, y + h),
-        "triangle": lambda: polygon("g", (x, y), (x + w, y), (x + w / 3, y + h)),
-        "ell": lambda: polygon(
-            "g",
-            (x, y),
-            (x + w, y),
-            (x + w, y + h / 3),
-            (x + w / 4, y + h / 3),
-            (x + w / 4, y + h),
-            (x, y + h),
-        ),
-        "circle": lambda: circle("g", x, y, w / 2),
-        "tongue": lambda: compound(
-            "g",
-            Line((x, y), (x + w, y)),
-            arc((x + w, y + h / 2), h / 2, -90, 90),
-            Line((x + w, y + h), (x, y + h)),
-            Line((x, y + h), (x, y)),
-        ),
-    }[kind]()
-    looks = {
-        key: (value,)
-        for key, value in (
-            ("material", draw(st.sampled_from([None, "birch", "steel"]))),
-            ("thickness", draw(st.sampled_from([None, 3.0]))),
+    outline = draw(
+        st.sampled_from(
+            [
+                [(0, 0), (w, 0), (w, h), (0, h)],
+                [(0, 0), (w, 0), (w / 3, h)],
+                [(0, 0), (w, 0), (w, h / 3), (w / 4, h / 3), (w / 4, h), (0, h)],
+                "circle",
+                "tongue",
+            ]
         )
-        if value
-    }
+    )
+    if outline == "circle":
+        geometry = circle("g", x, y, w / 2)
+    elif outline == "tongue":
+        tip = arc((x + w, y + h / 2), h / 2, -90, 90)
+        low, high = Line((x, y), tip.start), Line(tip.end, (x, y + h))
+        geometry = compound("g", low, tip, high, Line(high.end, low.start))
+    else:
+        geometry = polygon("g", *((x + u, y + v) for u, v in outline))
+    stock = {"material": [None, "birch", "steel"], "thickness": [None, 3.0]}
+    looks = {key: (value,) for key, values in stock.items() if (value := draw(st.sampled_from(values)))}
     return structure("solid", "s", geometry, **looks)
 
 
@@ -144,13 +116,10 @@ def plate(name: str, w: float, h: float, x: float = 0, **looks) -> SolvedStructu
 
 def test_parts_are_turned_where_it_helps_and_not_otherwise():
     def factors(layout: Layout, drawing: Drawing) -> list[complex]:
-        before = {body.path: numbers(outline(body)) for body in drawing.bodies}
-        return [
-            complex(round(f.real), round(f.imag))
-            for d in layout.sheets
-            for b in d.bodies
-            for f, _ in [motion(before[b.path], numbers(outline(b)))]
-        ]
+        before = {body.path: numbers(body.region.pieces) for body in drawing.bodies}
+        laid = (body for sheet in layout.sheets for body in sheet.bodies)
+        found = (motion(before[body.path], numbers(body.region.pieces))[0] for body in laid)
+        return [complex(round(f.real), round(f.imag)) for f in found]
 
     long = drawing_of(plate("a", 90, 30))
     assert factors(laid_out(long, (50, 100), 2), long) == [1j]
@@ -173,12 +142,12 @@ def test_a_drawing_inside_a_part_moves_with_it_whole():
     (laid,) = (d for d in layout.sheets if any(b.path == "part.s" for b in d.bodies))
     body = next(b for b in laid.bodies if b.path == "part.s")
     (stroke,) = laid.strokes
-    moved = motion(numbers(outline(drawing.bodies[0])), numbers(outline(body)))
+    moved = motion(numbers(drawing.bodies[0].region.pieces), numbers(body.region.pieces))
     assert moved[0] == pytest.approx(1j)
-    along = motion(numbers(list(drawing.strokes[0].pieces)), numbers(list(stroke.pieces)))
+    along = motion(numbers(drawing.strokes[0].pieces), numbers(stroke.pieces))
     assert along == pytest.approx(moved)
     # It runs 10 mm over the edge, so the sheet keeps that much free.
-    assert max(z.imag for z in numbers(list(stroke.pieces))) <= 195
+    assert max(z.imag for z in numbers(stroke.pieces)) <= 195
 
 
 def test_a_drawing_over_several_parts_is_cut_where_they_end():

@@ -117,7 +117,7 @@ def test_strokes_are_those_of_copies_cut_one_by_one(
     copies = [affinity.translate(stroke, *way) for way in places(lattice, 80)]
     found = tiled_strokes([Line((0, 0), (width, height))], polygon(corners), lattice, whole=False)
     assert total(found) == pytest.approx(sum(star.intersection(c).length for c in copies), abs=1e-4)
-    assert all(star.buffer(1e-6).covers(shapely.LineString([c.start, c.end])) for c in found)  # type: ignore[union-attr]
+    assert all(star.buffer(1e-6).covers(shapely.LineString([c.start, c.end])) for c in found)
 
 
 @given(stars(), st.floats(2, 10), st.floats(-3, 3))

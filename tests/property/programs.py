@@ -48,7 +48,19 @@ class Sketch:
         )
 
 
-KINDS = ("rectangle", "circle", "trapezoid", "triangle", "outline", "bow", "row")
+DRAWN = {
+    "rectangle": "{n} = rectangle(center: ({x}, {y}), width: {a}, height: {b})",
+    "circle": "{n} = circle(center: ({x}, {y}), radius: {a} + unit)",
+    "trapezoid": "{n} = trapezoid(center: ({x}, {y}), bottom_width: {a}, top_width: {b}, height: {a})",
+    "triangle": "{n} = triangle(center: ({x}, {y}), base: {a}, height: {b})",
+    "outline": "{n} = line(({x}, {y}), ({right}, {y}))|{n}_up = line({n}.end, ({right}, {top}))"
+    "|{n}_back = line({n}_up.end, {n}.start)",
+    "bow": "{n} = arc(center: ({x}, {y}), radius: {a}, start_angle: 0deg, end_angle: 180deg)"
+    "|{n}_chord = line({n}.end, {n}.start)",
+    "row": "for i in 0..2 {{ {n}[i] = circle(center: ({x} + {pitch} * i, {y}), radius: {a}) }}",
+}
+"""Geometry named `n`, its statements apart by bars."""
+KINDS = tuple(DRAWN)
 
 RELATIONS = (
     "{a}.above({b})",
@@ -73,30 +85,8 @@ COMPARISONS = (
 def geometry(draw: st.DrawFn, name: str, kinds: tuple[str, ...]) -> tuple[str, ...]:
     """One to three statements that draw something named `name`."""
     x, y, a, b = draw(PLACES), draw(PLACES), draw(SIZES), draw(SIZES)
-    match draw(st.sampled_from(kinds)):
-        case "rectangle":
-            return (f"{name} = rectangle(center: ({x}, {y}), width: {a}, height: {b})",)
-        case "circle":
-            return (f"{name} = circle(center: ({x}, {y}), radius: {a} + unit)",)
-        case "trapezoid":
-            return (
-                f"{name} = trapezoid(center: ({x}, {y}), bottom_width: {a}, top_width: {b}, height: {a})",
-            )
-        case "triangle":
-            return (f"{name} = triangle(center: ({x}, {y}), base: {a}, height: {b})",)
-        case "outline":
-            return (
-                f"{name} = line(({x}, {y}), ({x + a}, {y}))",
-                f"{name}_up = line({name}.end, ({x + a}, {y + b}))",
-                f"{name}_back = line({name}_up.end, {name}.start)",
-            )
-        case "row":
-            return (f"for i in 0..2 {{ {name}[i] = circle(center: ({x} + {3 * a} * i, {y}), radius: {a}) }}",)
-        case _:
-            return (
-                f"{name} = arc(center: ({x}, {y}), radius: {a}, start_angle: 0deg, end_angle: 180deg)",
-                f"{name}_chord = line({name}.end, {name}.start)",
-            )
+    numbers = {"x": x, "y": y, "a": a, "b": b, "right": x + a, "top": y + b, "pitch": 3 * a}
+    return tuple(DRAWN[draw(st.sampled_from(kinds))].format(n=name, **numbers).split("|"))
 
 
 @st.composite

@@ -8,16 +8,12 @@ import shapely
 from hypothesis import Phase, given
 from hypothesis import strategies as st
 
-from aidl_lang import pipeline
-from aidl_lang.common.source import SourceFile
-from aidl_lang.common.world import MemoryWorld
-from aidl_lang.geometry.curves import Piece
 from aidl_lang.geometry.drawing import Drawing
-from aidl_lang.geometry.region import Loop, Region
+from aidl_lang.geometry.region import Region
 from tests.amount import tries
+from tests.compiled import compiled
+from tests.geometry.test_regions import shapely_of
 
-CHORDS = 400
-"""Into how many straight lines a curve is cut for the comparison with polygons."""
 CLOSE = 0.01
 """Relative to the size of what is compared."""
 SHAPES = (
@@ -43,33 +39,23 @@ profile = tries(24, phases=(Phase.explicit, Phase.generate))
 
 
 def drawing_of(text: str) -> Drawing:
-    found = pipeline.compile(SourceFile("clips.aidl", text), MemoryWorld({}))
-    assert {d.code for d in found.diagnostics if d.is_error} <= {"E0339"}
-    assert found.drawing is not None
+    found = compiled(text)
+    assert {d.code for d in found.errors} <= {"E0339"}
     return found.drawing
 
 
-def flat(piece: Piece) -> np.ndarray:
-    return piece.points(np.linspace(0, 1, CHORDS))
-
-
-def polygon(loop: Loop) -> shapely.Geometry:
-    return shapely.make_valid(shapely.Polygon(np.concatenate([flat(p)[:-1] for p in loop.pieces])))
-
-
-def area_of(region: Region) -> shapely.Geometry:
-    faces = [
-        polygon(f.outer).difference(shapely.unary_union([polygon(h) for h in f.holes])) for f in region.faces
-    ]
-    return shapely.unary_union(faces)
+def pane_of(shape: str) -> shapely.Geometry:
+    return shapely_of(drawing_of(f"solid pane {{ rim = {shape} }}").regions["pane"])
 
 
 def ink_of(drawing: Drawing) -> shapely.Geometry:
-    return shapely.unary_union([shapely.LineString(flat(p)) for s in drawing.strokes for p in s.pieces])
+    return shapely.unary_union(
+        [shapely.LineString(p.points(np.linspace(0, 1, 400))) for s in drawing.strokes for p in s.pieces]
+    )
 
 
 def program(window: str, clip: str, one: str, hole: str, other: str, line: object, drawn: str) -> str:
-    start, end = line  # type: ignore[misc]
+    start, end = line
     return f"""
     assembly view {{
         construction window = {window}
@@ -89,11 +75,11 @@ def test_what_is_clipped_is_what_it_was_inside_the_outline(
 ):
     whole = drawing_of(program(window, "", one, hole, other, line, drawn))
     clipped = drawing_of(program(window, "@clip(window)", one, hole, other, line, drawn))
-    pane = area_of(drawing_of(f"solid pane {{ rim = {window} }}").regions["pane"])
+    pane = pane_of(window)
     for name in ("one", "other"):
         path = f"view.scene.{name}"
-        expected = area_of(whole.regions.get(path, Region())).intersection(pane)
-        found = area_of(clipped.regions.get(path, Region()))
+        expected = shapely_of(whole.regions.get(path, Region())).intersection(pane)
+        found = shapely_of(clipped.regions.get(path, Region()))
         assert found.symmetric_difference(expected).area <= CLOSE * pane.area
         own, twin = (clipped.regions.get(f"view.{of}.{name}", Region()).area for of in ("scene", "twin"))
         assert twin == pytest.approx(own, rel=1e-6, abs=1e-6)
@@ -114,7 +100,7 @@ def test_an_outline_in_another_leaves_what_lies_in_both(outer: str, inner: str, 
         construction inner = {inner}
         @clip(outer) assembly a {{ @clip(inner) solid b {{ rim = {one} }} }}
     }}""")
-    panes = [area_of(drawing_of(f"solid pane {{ rim = {s} }}").regions["pane"]) for s in (outer, inner, one)]
+    panes = [pane_of(shape) for shape in (outer, inner, one)]
     expected = panes[0].intersection(panes[1]).intersection(panes[2])
-    found = area_of(drawing.regions.get("view.a.b", Region()))
+    found = shapely_of(drawing.regions.get("view.a.b", Region()))
     assert found.symmetric_difference(expected).area <= CLOSE * panes[0].area

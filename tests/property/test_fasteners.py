@@ -41,7 +41,6 @@ def built(call: str) -> Model:
 def measured(made: Model) -> tuple[float, tuple[float, float, float, float], dict[str, int]]:
     """Area, box about the origin of the part, and how many strokes there are of each name."""
     drawing = made._compiled.drawing
-    assert drawing is not None
     measures = drawing.measures["a.part"]
     left, bottom, right, top = measures.box
     counts: dict[str, int] = {}
@@ -67,9 +66,6 @@ def head_of(size: str, head: str) -> tuple[float, float, float, float]:
     if head == "countersunk":
         depth = (sunk - d) / 2
         return sunk, 0, depth, (sunk + d) / 2 * depth
-    assert pan is not None
-    assert pan_height is not None
-    assert crown is not None
     half_angle = math.asin(pan / 2 / crown)
     side = pan_height - crown * (1 - math.cos(half_angle))
     return pan, pan_height, 0, pan * side + crown**2 * (half_angle - math.sin(2 * half_angle) / 2)
@@ -121,9 +117,9 @@ def test_a_wood_screw_is_pointed(diameter: float, slenderness: float) -> None:
     made = built(f"wood_screw({diameter!r}, {length!r})")
     area, box, _ = measured(made)
     assert box == pytest.approx((-diameter, -length, diameter, 0), rel=1e-6, abs=1e-6)
-    region = made._compiled.drawing.regions["a.part"]  # type: ignore[union-attr]
+    region = made._compiled.drawing.regions["a.part"]
     (face,) = region.faces
-    outline = Polygon([piece.start for piece in face.outer.pieces])  # type: ignore[union-attr]
+    outline = Polygon([piece.start for piece in face.outer.pieces])
     assert outline.is_valid
     assert outline.area == pytest.approx(area, rel=1e-6)
     r = diameter / 2
@@ -183,7 +179,6 @@ assembly hinge {
         "hinge.row[2].seat": (20, 40),
     }
     solved = found._compiled.model
-    assert solved is not None
     every = {g.path: g.values.get("at") for s in solved.root.walk() for g in s.geometry}
     assert set(points) <= set(every), sorted(every)
     for path, place in points.items():

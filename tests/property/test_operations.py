@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,13 +11,11 @@ from hypothesis import Phase, given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from aidl_lang import pipeline
-from aidl_lang.common.source import SourceFile
-from aidl_lang.common.world import MemoryWorld
-from aidl_lang.geometry.curves import Arc, Bezier, Circle, Curve, Ellipse, Line
+from aidl_lang.geometry.curves import FIELDS, Curve
 from aidl_lang.geometry.solved import SolvedGeometry, SolvedStructure
 from aidl_lang.pipeline import Compiled
 from tests.amount import tries
+from tests.compiled import compiled
 
 SHAPES = (
     "circle(center: (3, 4), radius: 5)",
@@ -66,58 +63,41 @@ def reflection(a: tuple[float, float], b: tuple[float, float]) -> Map:
     return Map(2 * np.outer(way, way) - np.eye(2), np.array(a), np.array(a))
 
 
-def compiled(text: str) -> Compiled:
-    found = pipeline.compile(SourceFile("operations.aidl", text), MemoryWorld({}))
-    assert [d for d in found.diagnostics if d.code.startswith("E")] == []
-    assert found.model is not None
+def made(text: str) -> Compiled:
+    found = compiled(text)
+    assert found.errors == []
     assert found.model.status == "solved"
     return found
 
 
 def part(found: Compiled, name: str) -> SolvedStructure:
-    assert found.model is not None
-    structure = found.model.root.find(f"{found.model.root.name}.{name}")
-    assert structure is not None
-    return structure
+    return found.model.root.find(f"{found.model.root.name}.{name}")
 
 
-def curves(structure: SolvedStructure) -> Iterator[Curve]:
-    for geometry in structure.geometry:
-        yield from geometry.curves()
+def curves(found: Compiled, name: str) -> list[Curve]:
+    return [curve for geometry in part(found, name).geometry for curve in geometry.curves()]
 
 
 def assert_mapped(sources: list[Curve], copies: list[Curve], by: Map) -> None:
     """The copies are the sources moved, curve by curve."""
     turned_over = np.linalg.det(by.matrix) < 0
     scale = math.sqrt(abs(np.linalg.det(by.matrix)))
-    assert len(sources) == len(copies) > 0
+    assert [type(c) for c in sources] == [type(c) for c in copies] != []
     for a, b in zip(sources, copies, strict=True):
-        match a, b:
-            case (Line(), Line()) | (Bezier(), Bezier()):
-                points = ("start", "end") if isinstance(a, Line) else ("p0", "p1", "p2", "p3")
-                for name in points:
-                    assert getattr(b, name) == pytest.approx(by(getattr(a, name)), abs=CLOSE)
-            case Circle(), Circle():
-                assert b.center == pytest.approx(by(a.center), abs=CLOSE)
-                assert b.radius == pytest.approx(scale * a.radius)
-            case Arc(), Arc():
-                for name in ("center", "start", "end"):
-                    assert getattr(b, name) == pytest.approx(by(getattr(a, name)), abs=CLOSE)
-                assert b.sweep == pytest.approx(-a.sweep if turned_over else a.sweep)
-            case Ellipse(), Ellipse():
-                assert b.center == pytest.approx(by(a.center), abs=CLOSE)
-                assert (b.rx, b.ry) == pytest.approx((scale * a.rx, scale * a.ry))
-                way = by.matrix @ np.array([math.cos(a.angle), math.sin(a.angle)])
-                cross = way[0] * math.sin(b.angle) - way[1] * math.cos(b.angle)
-                assert cross == pytest.approx(0, abs=CLOSE)
-            case _:
-                raise AssertionError(f"{a} became {b}")
+        for name in FIELDS[type(a)]:
+            old, new = getattr(a, name), getattr(b, name)
+            if isinstance(old, tuple):
+                assert new == pytest.approx(by(old), abs=CLOSE)
+            elif name == "angle":
+                way = by.matrix @ np.array([math.cos(old), math.sin(old)])
+                assert way[0] * math.sin(new) - way[1] * math.cos(new) == pytest.approx(0, abs=CLOSE)
+            else:
+                turned = -1 if turned_over else 1
+                assert new == pytest.approx(turned * old if name == "sweep" else scale * old)
 
 
 def assert_covers(found: Compiled, name: str, source: str, scale: float = 1.0) -> None:
-    assert found.drawing is not None
-    root = found.model.root.name if found.model else ""
-    one, other = (found.drawing.measures[f"{root}.{n}"] for n in (source, name))
+    one, other = (found.drawing.measures[f"m.{n}"] for n in (source, name))
     assert other.area == pytest.approx(scale * scale * one.area, rel=1e-9)
     assert other.perimeter == pytest.approx(scale * one.perimeter, rel=1e-9)
 
@@ -130,7 +110,7 @@ def test_copies_of_geometry(
 ) -> None:
     if math.dist(a, b) < 1:
         b = (a[0] + 5, a[1])
-    found = compiled(f"""
+    found = made(f"""
         @detached assembly m {{
             solid source {{ s = {shape} }}
             solid image {{ let s = {shape}; c = mirror(s, about: line({a}, {b})) }}
@@ -139,7 +119,7 @@ def test_copies_of_geometry(
             solid grown {{ let s = {shape}; c = scale(s, {scale}, about: {a}) }}
             solid edited {{ c = {shape}; rotate(c, {angle}deg, about: {a}); scale(c, {scale}, about: {b}) }}
         }}""")
-    source = list(curves(part(found, "source")))
+    source = curves(found, "source")
     grown = Map(scale * np.eye(2), np.array(a), np.array(a))
     again = turn(angle, a)
     edited = Map(scale * again.matrix, again.about, scale * (again.to - b) + b)
@@ -150,7 +130,7 @@ def test_copies_of_geometry(
         ("grown", grown, scale),
         ("edited", edited, scale),
     ):
-        assert_mapped(source, list(curves(part(found, name))), by)
+        assert_mapped(source, curves(found, name), by)
         assert_covers(found, name, "source", size)
 
 
@@ -166,7 +146,7 @@ def test_a_mirrored_structure(
 ) -> None:
     if math.dist(a, b) < 1:
         b = (a[0] + 5, a[1])
-    found = compiled(f"""
+    found = made(f"""
         @detached assembly m {{
             solid left at {at} rotated {angle}deg {{
                 s = {shape}
@@ -176,10 +156,9 @@ def test_a_mirrored_structure(
             back = mirror(right, about: (1, 2))
         }}""")
     image = reflection(a, b)
-    left, right = part(found, "left"), part(found, "right")
-    assert right.frame.mirrored
-    assert_mapped(list(curves(left)), list(curves(right)), image)
-    hands = [list(curves(part(found, f"{n}.hand"))) for n in ("left", "right", "back")]
+    assert part(found, "right").frame.mirrored
+    assert_mapped(curves(found, "left"), curves(found, "right"), image)
+    hands = [curves(found, f"{n}.hand") for n in ("left", "right", "back")]
     assert_mapped(hands[0], hands[1], image)
     assert_mapped(hands[1], hands[2], turn(180, (1, 2)))
     assert_covers(found, "right", "left")
@@ -191,8 +170,7 @@ def test_the_sides_of_a_mirrored_shape_go_by_geometry() -> None:
     shapes = [s for s in SHAPES if s.startswith(("rectangle", "rounded", "trapezoid")) and "angle" not in s]
     for shape in shapes:
         for axis in ("x_axis", "y_axis"):
-            found = compiled(f"drawing d {{ let s = {shape}; c = mirror(s, about: {axis}) }}")
-            assert found.model is not None
+            found = made(f"drawing d {{ let s = {shape}; c = mirror(s, about: {axis}) }}")
             (copy,) = found.model.root.geometry
             middle = {p.name: _middle(p) for p in copy.parts}
             assert middle["left"][0] < middle["right"][0]

@@ -6,7 +6,6 @@ import cmath
 import json
 import math
 from collections.abc import Iterator
-from functools import cache
 from itertools import pairwise
 from typing import Any
 
@@ -16,27 +15,18 @@ import shapely
 from shapely import Polygon
 from shapely.affinity import rotate, translate
 
-import aidl_lang
+from tests.compiled import json_of
 
 FINE = 64
 """Chords for a curve when an outline becomes a polygon."""
 
 
-@cache
-def solved(program: str) -> dict[str, Any]:
-    """The root structure of a program that must solve."""
-    model = aidl_lang.compile(program)
-    assert model.status == "solved", [d.message for d in model.diagnostics]
-    root: dict[str, Any] = json.loads(model.to_json())["root"]
-    return root
-
-
 def geometry(program: str, structure: str = "") -> dict[str, Any]:
-    """The geometry of the root, or of one of its children."""
-    root = solved(program)
-    found = next((s for s in root["structures"] if s["name"] == structure), root)
-    parts: dict[str, Any] = found["geometry"]
-    return parts
+    """The geometry of the root of a program that must solve, or of one of its children."""
+    found = json_of(program)
+    assert found["status"] == "solved"
+    root = found["root"]
+    return next((s for s in root["structures"] if s["name"] == structure), root)["geometry"]
 
 
 def indexed(parts: dict[str, Any], name: str) -> list[dict[str, Any]]:
@@ -117,9 +107,7 @@ def test_the_area_within_a_path_of_arcs() -> None:
     """A square of 40 with half discs of 20 added on the right, and taken away on the left."""
     steps = """right(40), arc_to((40, 40), radius: 20), left(40), arc_by(180deg, radius: 20), close()"""
     program = f"solid s {{ edge = path(from: (0, 0), {steps}) }}"
-    model = aidl_lang.compile(program)
-    area = json.loads(model.to_json())["regions"]["s"]["area"]
-    assert area == pytest.approx(1600 + math.pi * 400, abs=1e-6)
+    assert json_of(program)["regions"]["s"]["area"] == pytest.approx(1600 + math.pi * 400, abs=1e-6)
 
 
 # --- Splines -------------------------------------------------------------------------------------

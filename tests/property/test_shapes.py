@@ -5,7 +5,6 @@ forms of `shapes.md`. Figures of Bézier curves are integrated along the solved 
 from __future__ import annotations
 
 import functools
-import json
 import math
 import re
 from collections.abc import Callable, Iterable
@@ -18,11 +17,11 @@ import pytest
 from hypothesis import Phase, given
 from hypothesis import strategies as st
 
-import aidl_lang
 from aidl_lang.checking import library
 from aidl_lang.syntax import ast
 from aidl_lang.tools.reference.collect import reference
 from tests.amount import tries
+from tests.compiled import json_of, model
 
 SHAPES = r"(arches|arcs|corners|figures|polygons|profiles|quadrilaterals|rectangles|rounds|triangles|wheels)"
 """The library's files of shapes; paths, curves, gears, letters and hardware have tests of their own."""
@@ -177,11 +176,11 @@ few = tries(3, phases=(Phase.explicit, Phase.generate))
 
 
 def compiled(call: str) -> dict[str, Any]:
-    model = aidl_lang.compile(f"solid s {{ body = {call} }}")
-    assert model.ok, (call, model.diagnostics)
-    assert not model.diagnostics, (call, [d.message for d in model.diagnostics])
-    document: dict[str, Any] = json.loads(model.to_json())
-    return document
+    text = f"solid s {{ body = {call} }}"
+    found = model(text)
+    assert found.ok, (call, found.diagnostics)
+    assert not found.diagnostics, (call, [d.message for d in found.diagnostics])
+    return json_of(text)
 
 
 def test_table_is_read_whole() -> None:
@@ -205,14 +204,13 @@ def test_area_and_perimeter(make: Form, data: st.DataObject) -> None:
 def test_a_shape_is_held_at_the_middle_of_its_box_or_says_where(make: Form) -> None:
     call, _, _ = make(lambda low, high: round(low + 0.4 * (high - low), 2))
     name, arguments = call_of(call)
-    model = compiled(call)["root"]
-    body = model["geometry"]["body"].get("params", {})
+    root = compiled(call)["root"]
+    body = root["geometry"]["body"].get("params", {})
     if "center" not in body or any(re.search(r"_(left|right|center)$", each) for each in arguments):
         return
-    box = model["bb"]
+    box = root["bb"]
     middle = ((box["left"] + box["right"]) / 2, (box["bottom"] + box["top"]) / 2)
     entry = reference().find(name)
-    assert entry is not None
     if body["center"] != pytest.approx(middle, abs=1e-6):
         assert "`center`" in entry.doc.lies, call
 

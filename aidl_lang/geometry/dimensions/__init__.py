@@ -146,7 +146,6 @@ def _scattered(drawing: Drawing, stated: Sequence[Group], slack: float) -> tuple
 
 
 def _is_about(of: Dimension, holes: Sequence[Circle], slack: float) -> bool:
-    """Tells whether a dimension is told by the table of holes."""
     if of.origin == "hand":
         return False
     match of:
@@ -297,7 +296,6 @@ class _Part:
         return [self.sketch.row(reading) for of in group for reading in sk.told(self.sketch, of) or ()]
 
     def _learn(self, readings: Iterable[sk.Reading]) -> bool:
-        """Tells whether any of some numbers says something new."""
         return self.span.add_all(map(self.sketch.row, readings))
 
     def _shifted(self, of: Dimension) -> Dimension:

@@ -21,7 +21,7 @@ from aidl_lang.building.wording import Wording
 from aidl_lang.common.materials import limits as fit_limits
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
-from aidl_lang.geometry.curves import NO_LENGTH, Arc, Circle, Line, Piece, Vec, turn_between
+from aidl_lang.geometry.curves import NO_LENGTH, Arc, Circle, Line, Piece, Vec, meeting, turn_between
 from aidl_lang.geometry.dimensions import features
 from aidl_lang.geometry.solved import Dimension, Length, Roundness, SolvedGeometry, SolvedStructure
 from aidl_lang.syntax import ast
@@ -137,9 +137,7 @@ class _Statement:
         )
 
     def _alone(self, node: ast.Expression) -> Dimension | None:
-        thing = self.wording.value(node)
-        solved = self.scene.geometry.get(thing.path) if isinstance(thing, Geometry) else None
-        curve = solved.curve if solved is not None else None
+        curve = self._curve(node)
         if isinstance(curve, Circle | Arc):
             return features.round_dimension(curve)
         return features.length_of_line(curve.start, curve.end) if isinstance(curve, Line) else None
@@ -149,7 +147,7 @@ class _Statement:
         upright, at a right angle to a slanted edge; the angle of two edges that are not parallel.
         """
         lines = [line for node in (a, b) if (line := self._line(node)) is not None]
-        if len(lines) == 2 and features.meeting(*lines) is not None:
+        if len(lines) == 2 and meeting(*lines) is not None:
             turn = turn_between(lines[0].way, lines[1].way)
             return features.angle_of(lines[0], lines[1], abs(math.degrees(turn)))
         axis = next((k for node in (a, b) if (k := self._axis(node)) is not None), None)
@@ -178,14 +176,12 @@ class _Statement:
         return (p,) if p is not None else ()
 
     def _read(self) -> Iterator[tuple[Dimension, Num]]:
-        """Dimensions with the values that are stated for them."""
         match self.wording.node:
             case ast.Comparison(operands=(left, right), operators=("==",)):
                 for node, other in ((left, right), (right, left)):
                     value = self._constant(other)
-                    measured = list(self._measured(node, value)) if isinstance(value, Num) else []
-                    if isinstance(value, Num) and measured:
-                        yield from ((d, value) for d in measured)
+                    if isinstance(value, Num) and (found := self._measured(node, value)) is not None:
+                        yield found, value
                         return
                 yield from self._offset(left, right)
             case ast.Call() as call:
@@ -193,15 +189,14 @@ class _Statement:
 
     # --- Measures ----------------------------------------------------------------------------------
 
-    def _measured(self, node: ast.Expression, value: Num) -> Iterator[Dimension]:
-        """Yields the dimension that `node == value` measures."""
+    def _measured(self, node: ast.Expression, value: Num) -> Dimension | None:
+        """Returns the dimension that `node == value` measures."""
         match node:
-            case ast.Call() if (name := self._callee(node)) in _MEASURES:
-                given = self._positional(node)
-                if all(a.name is None for a in node.arguments):
-                    yield from self._by_call(name, given, abs(value.value))
+            case ast.Call() if all(a.name is None for a in node.arguments):
+                return self._by_call(self._callee(node), self._positional(node), abs(value.value))
             case ast.Member(value=of, name=word) if word.text in _SIZES:
-                yield from self._size(of, word.text, abs(value.value))
+                return self._size(of, word.text, abs(value.value))
+        return None
 
     def _call(self, call: ast.Call) -> Iterator[tuple[Dimension, Num]]:
         """Yields a relation, or a measure that is called with its value."""
@@ -217,16 +212,15 @@ class _Statement:
             value = self._constant(said)
             if isinstance(value, Num) and set(named) <= {"value", "ccw"}:
                 rest = given if "value" in named else given[:-1]
-                yield from ((d, value) for d in self._by_call(name, rest, abs(value.value)))
+                if (found := self._by_call(name, rest, abs(value.value))) is not None:
+                    yield found, value
 
-    def _by_call(self, name: str, given: Sequence[ast.Expression], value: float) -> Iterator[Dimension]:
+    def _by_call(self, name: str, given: Sequence[ast.Expression], value: float) -> Dimension | None:
         if name == "angle":
-            yield from self._angle(given, value)
-        elif name in ("length", "radius", "diameter") and len(given) == 1:
-            yield from self._size(given[0], name, value)
-        elif len(given) == 2:
-            found = self._distance(name, *given)
-            yield from [found] if found is not None else []
+            return self._angle(given, value)
+        if name in ("length", "radius", "diameter") and len(given) == 1:
+            return self._size(given[0], name, value)
+        return self._distance(name, *given) if name in _MEASURES and len(given) == 2 else None
 
     def _distance(self, name: str, a: ast.Expression, b: ast.Expression) -> Length | None:
         if name != "distance":
@@ -242,34 +236,31 @@ class _Statement:
             q = features.foot(p, line) if p is not None else None
         return features.length_of_line(p, q) if p is not None and q is not None else None
 
-    def _angle(self, given: Sequence[ast.Expression], value: float) -> Iterator[Dimension]:
+    def _angle(self, given: Sequence[ast.Expression], value: float) -> Dimension | None:
         lines = [self._line(n) for n in given]
         if len(given) == 3:
             a, corner, b = (self._point(n) for n in given)
             lines = [Line(corner, a), Line(corner, b)] if a and corner and b else []
         if len(lines) == 2 and lines[0] and lines[1]:
-            found = features.angle_of(lines[0], lines[1], min(value % 360, -value % 360))
-            yield from [found] if found is not None else []
-        elif len(lines) == 1 and lines[0]:
-            yield from features.level_angle(lines[0], self._turned())
+            return features.angle_of(lines[0], lines[1], min(value % 360, -value % 360))
+        return features.level_angle(lines[0], self._turned()) if len(lines) == 1 and lines[0] else None
 
-    def _size(self, node: ast.Expression, name: str, value: float) -> Iterator[Dimension]:
+    def _size(self, node: ast.Expression, name: str, value: float) -> Dimension | None:
         thing = self.wording.value(node)
         solved = self.scene.geometry.get(thing.path) if isinstance(thing, Geometry) else None
-        curve = solved.curve if solved is not None else None
+        curve = self._curve(node)
         if isinstance(curve, Circle | Arc) and name in ("radius", "diameter"):
-            yield features.round_dimension(curve)
-        elif isinstance(curve, Line) and name == "length":
-            line = features.length_of_line(curve.start, curve.end)
-            yield from [line] if line else []
-        elif isinstance(curve, Line) and name == "angle":
-            yield from features.level_angle(curve, self._turned())
-        elif solved is not None and isinstance(thing, Geometry) and thing.is_compound and name != "angle":
+            return features.round_dimension(curve)
+        if isinstance(curve, Line) and name == "length":
+            return features.length_of_line(curve.start, curve.end)
+        if isinstance(curve, Line) and name == "angle":
+            return features.level_angle(curve, self._turned())
+        if solved is not None and isinstance(thing, Geometry) and thing.is_compound and name != "angle":
             known = self._turned(), self.scene.evaluate, self.scene.names
-            sized = features.SizedGeometry(thing, solved, *known)
-            yield from list(sized.length(name, value))[:1]
-        elif name in ("width", "height") and (curves := self.scene.curves(thing)):
-            yield features.length_along(curves, self._way(int(name == "height")))
+            return next(features.SizedGeometry(thing, solved, *known).length(name, value), None)
+        if name in ("width", "height") and (curves := self.scene.curves(thing)):
+            return features.length_along(curves, self._way(int(name == "height")))
+        return None
 
     # --- Offsets -----------------------------------------------------------------------------------
 
@@ -373,10 +364,13 @@ class _Statement:
         x, y = spelled_out(*convert(p.place, here, self.scene.root))
         return self.scene.evaluate(x), self.scene.evaluate(y)
 
-    def _line(self, node: ast.Expression) -> Line | None:
+    def _curve(self, node: ast.Expression) -> Piece | None:
         value = self.wording.value(node)
         solved = self.scene.geometry.get(value.path) if isinstance(value, Geometry) else None
-        return solved.curve if solved is not None and isinstance(solved.curve, Line) else None
+        return solved.curve if solved is not None else None
+
+    def _line(self, node: ast.Expression) -> Line | None:
+        return curve if isinstance(curve := self._curve(node), Line) else None
 
     def _turned(self) -> float:
         return self.scene.evaluate(convert_angle(ZERO, self.constraint.holder, self.scene.root))

@@ -17,7 +17,7 @@ from aidl_lang.building.values import ListVal, Num
 from aidl_lang.checking.units import ANGLE, LENGTH
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
-from aidl_lang.geometry.curves import Arc, Circle, Ellipse, EllipseArc, Line, Piece, Vec, larger_side
+from aidl_lang.geometry.curves import Arc, Circle, Ellipse, EllipseArc, Line, Piece, Vec, larger_side, meeting
 from aidl_lang.geometry.intersect import inside
 from aidl_lang.geometry.region import Region
 from aidl_lang.geometry.solved import Dimension, Length, Opening, Roundness, SolvedGeometry, SolvedStructure
@@ -162,16 +162,6 @@ def angle_of(a: Line, b: Line, degrees: float) -> Opening | None:
     return best[1] if best else None
 
 
-def meeting(a: Line, b: Line) -> Vec | None:
-    """Returns the crossing of two endless lines; None if they are parallel."""
-    (ux, uy), (vx, vy) = a.way, b.way
-    cross = ux * vy - uy * vx
-    if abs(cross) <= _FLAT * math.hypot(ux, uy) * math.hypot(vx, vy):
-        return None
-    t = ((b.start[0] - a.start[0]) * vy - (b.start[1] - a.start[1]) * vx) / cross
-    return a.start[0] + t * ux, a.start[1] + t * uy
-
-
 def _arm(line: Line, side: float, corner: Vec) -> tuple[float, tuple[float, float]]:
     """Returns the direction of a line to one side, and the stretch in which it is drawn there."""
     ux, uy = side * line.way[0], side * line.way[1]
@@ -292,7 +282,13 @@ class SizedGeometry:
             if isinstance(value, Num) and (origin := origin_of(value, self.built)) is not None:
                 for dimension in self.field(name, self.evaluate(value.expression), value):
                     found = True
-                    yield self._said(dimension, name, value, origin)
+                    yield replace(
+                        dimension,
+                        origin=origin,
+                        of=f"{self.solved.path}.{name}",
+                        name=self.names.get(value.expression),
+                        group=(self.built.span, name),
+                    )
         is_by_points = any(isinstance(value, ListVal) for value in self._values().values())
         if not found and self.built.is_compound and is_by_points and self._curves():
             for k in (0, 1):
@@ -308,21 +304,12 @@ class SizedGeometry:
     def _curves(self) -> list[Piece]:
         return list(self.solved.curves())
 
-    def _said(self, dimension: Dimension, name: str, value: Num, origin: str) -> Dimension:
-        return replace(
-            dimension,
-            origin=origin,
-            of=f"{self.solved.path}.{name}",
-            name=self.names.get(value.expression),
-            group=(self.built.span, name),
-        )
-
     def field(self, name: str, value: float, written: Num) -> Iterator[Dimension]:
         """Yields the dimension of a field; none if nothing that is drawn has this size."""
         if self.built.type in ("glyphs", "traced") or not math.isfinite(value):
             return
-        if written.dimension == ANGLE:
-            yield from self._angle(name, value, written)
+        if written.dimension == ANGLE and (opening := self._angle(name, value, written)) is not None:
+            yield opening
         elif written.dimension in (None, LENGTH) and value > 0:
             yield from self.length(name, value)
 
@@ -364,33 +351,31 @@ class SizedGeometry:
                 return reach_along
         return length_of_line(fitting[0][1].start, fitting[0][1].end) if fitting else None
 
-    def _angle(self, name: str, value: float, written: Num) -> Iterator[Dimension]:
-        """Yields the angle of an edge to the structure's x axis; none for right angles, which are seen."""
+    def _angle(self, name: str, value: float, written: Num) -> Opening | None:
+        """Returns the angle of an edge to the structure's x axis; none for right angles, which are seen."""
         if name != "angle" or abs((value + 45) % 90 - 45) < _TURNED:
-            return
+            return None
         line = self.solved.curve
         if isinstance(line, Line) and not written.expression.is_constant:
-            return  # that of a line written by its ends
+            return None  # that of a line written by its ends
         way = direction(value + self.turned)
         edges = [line] if isinstance(line, Line) else [c for c in self._curves() if isinstance(c, Line)]
         for edge in edges:
             u = unit(edge.start, edge.end)
             if u is not None and abs(dot(u, way)) > _PARALLEL:
-                yield from level_angle(edge, self.turned)
-                return
+                return level_angle(edge, self.turned)
+        return None
 
 
-def level_angle(edge: Line, turned: float) -> Iterator[Dimension]:
-    """Yields the angle of a line to the level through its lower end."""
+def level_angle(edge: Line, turned: float) -> Opening | None:
+    """Returns the angle of a line to the level through its lower end."""
     low, high = sorted((edge.start, edge.end), key=lambda p: dot(p, direction(turned + 90)))
     ux, uy = direction(turned)
     reach = math.dist(low, high)
     opening = (math.degrees(math.atan2(high[1] - low[1], high[0] - low[0])) - turned) % 360
     step, opening = (1e-9 * reach, opening) if opening <= 90 else (-1e-9 * reach, 180 - opening)
     level = Line(low, (low[0] + step * ux, low[1] + step * uy))
-    found = angle_of(level, Line(low, high), abs(opening))
-    if found is not None:
-        yield found
+    return angle_of(level, Line(low, high), abs(opening))
 
 
 def round_dimension(curve: Circle | Arc) -> Roundness:

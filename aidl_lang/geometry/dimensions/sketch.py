@@ -21,10 +21,9 @@ import numpy as np
 
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
-from aidl_lang.geometry.curves import Arc, Bounds, Circle, Floats, Line, Piece, Vec
-from aidl_lang.geometry.dimensions.features import X_AXIS, Y_AXIS, meeting
+from aidl_lang.geometry.curves import Arc, Bounds, Circle, Floats, Line, Piece, Vec, meeting
+from aidl_lang.geometry.dimensions.features import X_AXIS, Y_AXIS
 from aidl_lang.geometry.region import Loop
-from aidl_lang.geometry.sections import joined
 from aidl_lang.geometry.solved import Dimension, Length, Opening, Roundness
 
 Unknowns = Sequence[complex]
@@ -134,7 +133,7 @@ class Sketch:
         self.equations: list[Reading] = []
         self._spots: Places[Spot] = Places(slack)
         self._rounds: Places[Round] = Places(slack)
-        outlines = [joined(loop.pieces, _as_one) for loop in loops]
+        outlines = [loop.pieces for loop in loops]
         self._find_rounds([p for pieces in outlines for p in pieces if isinstance(p, Circle | Arc)])
         for pieces in outlines:
             checkpoint()
@@ -361,21 +360,6 @@ def _is_right(a: Piece, b: Piece) -> bool:
         return False
     u, v = a.derivative(1.0), b.derivative(0.0)
     return abs(u[0] * v[0] + u[1] * v[1]) <= 1e-6 * math.hypot(*u) * math.hypot(*v)
-
-
-def _as_one(a: Piece, b: Piece) -> Piece | None:
-    """Returns two pieces as one, if they are of one line or one circle."""
-    if not is_smooth(a, b):
-        return None
-    if isinstance(a, Line) and isinstance(b, Line):
-        return Line(a.start, b.end)
-    if isinstance(a, Arc) and isinstance(b, Arc) and a.sweep * b.sweep > 0:
-        near = 1e-9 * a.radius
-        if abs(a.radius - b.radius) <= near and math.dist(a.center, b.center) <= near:
-            sweep = a.sweep + b.sweep
-            is_whole = abs(sweep) >= 2 * math.pi - 1e-9
-            return Circle(a.center, a.radius) if is_whole else Arc(a.center, a.radius, a.start, b.end, sweep)
-    return None
 
 
 def flipped(at: Vec, axis: int, middle: float) -> Vec:
