@@ -303,10 +303,7 @@ class Structure:
 
     def is_within(self, other: Structure) -> bool:
         """Tells whether this structure is `other` or lies below it."""
-        here: Structure | None = self
-        while here is not None and here is not other:
-            here = here.parent
-        return here is other
+        return other in chain(self)
 
 
 Holder = Geometry | Structure
@@ -340,8 +337,6 @@ def chain(structure: Structure, up_to: Structure | None = None) -> list[Structur
 
 
 def common_ancestor(a: Structure, b: Structure) -> Structure:
-    if a.is_within(b):
-        return b
     above = set(chain(a))
     return next(s for s in chain(b) if s in above)
 
