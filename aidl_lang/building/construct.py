@@ -43,8 +43,6 @@ ROUND = 0.01
 """The part of the larger one by which the distances of start and end from the centre may differ without a
 warning."""
 
-_CODE = "W0503"
-
 _BY_CENTER = ("center", "start", "end")
 _BY_MIDDLE = ("start", "mid", "end")
 
@@ -59,8 +57,6 @@ def check_bare_points(it: Interpreter, node: ast.Call, arguments: Mapping[str, V
     start, end, across = _apart(a, b), _apart(a, c), _apart(b, c)
     if not differ(start, end) > ROUND:
         return
-    if any(d.code == _CODE and d.span == it.place(node) for d in it.diagnostics):
-        return  # reported in an earlier turn of a loop
     is_through = differ(start, across) <= differ(start, end)
     meant, other = (_BY_MIDDLE, _BY_CENTER) if is_through else (_BY_CENTER, _BY_MIDDLE)
     far = f"the start is {start:g} from the centre and the end {end:g}"
@@ -72,7 +68,7 @@ def check_bare_points(it: Interpreter, node: ast.Call, arguments: Mapping[str, V
         hint = f"or write `{node.callee.text}({said})` if that is meant"
         edits = tuple(Edit(place_before(p), f"{name}: ") for name, p in zip(meant, points, strict=True))
         fix = Fix(f"name them `{meant[0]}`, `{meant[1]}` and `{meant[2]}`", edits)
-    it.report(_CODE, message, node, hints=[hint], fix=fix)
+    it.report("W0503", message, node, hints=[hint], fix=fix, once=True)
 
 
 def _apart(a: PointVal, b: PointVal) -> float:

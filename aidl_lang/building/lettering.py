@@ -13,8 +13,8 @@ from aidl_lang.common import lettering
 from aidl_lang.common.font_files import FontError
 from aidl_lang.common.lettering import Font, Glyph
 from aidl_lang.common.prose import first_few
+from aidl_lang.common.source import Span
 from aidl_lang.common.world import FONTS, FileError, ReadFailure, relative_to
-from aidl_lang.syntax import ast
 
 # --- The font that a text names: one that ships with the package, or a file beside the program.
 #
@@ -96,12 +96,13 @@ def _writer(it: Interpreter) -> str:
 def typeset(it: Interpreter, a: Arguments) -> tuple[Glyph, ...]:
     """Returns the characters of a text in units of its height; empty after an error, reported here."""
     node = it.call_sites[-1]
+    at = it.place(node)
     text, align, name = (certain(a[each], TextVal).value for each in ("text", "align", "font"))
     apart = constant(it, certain(a["line_spacing"], Num), node, "the spacing of lines")
     if align not in lettering.ALIGNMENTS:
         allowed = ", ".join(f'`"{word}"`' for word in lettering.ALIGNMENTS)
         message = f'"{align}" is not one of the words that are meant here'
-        report_once(it, "E0516", message, node, [f"it is one of {allowed}"])
+        it.report("E0516", message, at, hints=[f"it is one of {allowed}"], once=True)
         return ()
     if apart is None:
         return ()
@@ -110,16 +111,16 @@ def typeset(it: Interpreter, a: Arguments) -> tuple[Glyph, ...]:
     try:
         font = font_of(it, name, bold=a["bold"] is True)
         if unknown := lettering.unknown_characters(text, font):
-            _report_unknown(it, unknown, node, name)
+            _report_unknown(it, unknown, at, name)
             return ()
         glyphs = lettering.typeset(text, align, apart, font)
     except (NoFontError, FontError) as reason:
         lack = reason if isinstance(reason, NoFontError) else _broken(name, reason)
-        report_once(it, lack.code, lack.message, node, lack.hints)
+        it.report(lack.code, lack.message, at, hints=lack.hints, once=True)
         return ()
     if not glyphs:
         hint = "write what is to be drawn, or leave the text out"
-        report_once(it, "E0351", "there is nothing to draw in this text", node, [hint])
+        it.report("E0351", "there is nothing to draw in this text", at, hints=[hint], once=True)
     return glyphs
 
 
@@ -138,7 +139,7 @@ def bridge(it: Interpreter, a: Arguments) -> Num | None:
         return None
     if a["font"] == TextVal(SINGLE_LINE):
         what = "letters of single lines enclose nothing that a stencil could hold"
-        report_once(it, "E0342", what, node, ["leave out `stencil`, or the font"])
+        it.report("E0342", what, it.place(node), hints=["leave out `stencil`, or the font"], once=True)
         return None
     if stencil is True:
         return number(_BRIDGE, PLAIN)
@@ -146,23 +147,17 @@ def bridge(it: Interpreter, a: Arguments) -> Num | None:
     if width is not None and width <= 0:
         given = f"{width:g}" if isinstance(stencil, Num) else kind_of(stencil)
         hint = "write `stencil: true` for a tenth of the height, or how wide they are: `stencil: 2mm`"
-        report_once(it, "E0342", f"`stencil` is {given}, and bridges have a width", node, [hint])
+        message = f"`stencil` is {given}, and bridges have a width"
+        it.report("E0342", message, it.place(node), hints=[hint], once=True)
     return number(width, LENGTH) if width and width > 0 else None
 
 
-def report_once(it: Interpreter, code: str, message: str, node: ast.Node, hints: list[str]) -> None:
-    """Reports once for a text, at its author's call rather than in the library."""
-    span = it.place(node)
-    if not any(d.code == code and d.span == span for d in it.diagnostics):
-        it.report(code, message, span, hints=hints)
-
-
-def _report_unknown(it: Interpreter, unknown: list[str], node: ast.Node, font: str) -> None:
+def _report_unknown(it: Interpreter, unknown: list[str], at: Span | None, font: str) -> None:
     names = first_few(list(map(lettering.described, unknown)), 5)
     others = {c: lettering.replacement(c) for c in unknown[:5]}
     instead = [f"write `{other}` for `{c}`" for c, other in others.items() if other is not None]
     if font != PLAIN_FONT:
-        report_once(it, "E0350", f"`{font}` has no {names}", node, instead)
+        it.report("E0350", f"`{font}` has no {names}", at, hints=instead, once=True)
         return
     has = "it has Latin, Greek and Cyrillic letters, digits, punctuation, and signs such as `±` `°` `Ø` `→`"
-    report_once(it, "E0350", f"the font has no {names}", node, [*instead, has])
+    it.report("E0350", f"the font has no {names}", at, hints=[*instead, has], once=True)

@@ -441,17 +441,17 @@ _UPRIGHT = TextVal("upright")  # the side of a curve that is not told
 def lettered(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
     """Returns the characters of a text along a curve, each a geometry that stands upright on it."""
     from aidl_lang.building.along import KINDS, reading_way
-    from aidl_lang.building.lettering import bridge, is_filled, report_once, typeset
+    from aidl_lang.building.lettering import bridge, is_filled, typeset
     from aidl_lang.common.lettering import ALIGNMENTS
 
     given = [v for v in spliced(a["curve"]) if isinstance(v, Geometry)]
     curves = [p for g in given for p in g.primitives(even_construction=True) if p.type != "point"]
     is_simple = all(c.type in KINDS for c in curves) and not any(g.recipe for g in given)
-    inside = a["inside"]
+    inside, place = a["inside"], it.place(it.call_sites[-1])
     if inside != _UPRIGHT and not isinstance(inside, bool):
         what = f"`inside` is {kind_of(inside)}, and tells the side of a curve by true or false"
         hint = "leave it out for the side on which it is upright"
-        report_once(it, "E0516", what, it.call_sites[-1], [hint])
+        it.report("E0516", what, place, hints=[hint], once=True)
         return NOTHING
     side = inside if isinstance(inside, bool) else None
     way = reading_way(curves, env.here, inside=side) if curves and is_simple else None
@@ -459,7 +459,8 @@ def lettered(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
         what = with_article(given[0].type) if len(given) == 1 else "no one curve"
         message = f"a text follows a circle, or an open way of lines and arcs, and this is {what}"
         hint = "name an edge of an outline, as in `along: plate.top`, or draw a guide near it: "
-        report_once(it, "E0358", message, it.call_sites[-1], [hint + "`construction way = arc(…)`"])
+        hint += "`construction way = arc(…)`"
+        it.report("E0358", message, place, hints=[hint], once=True)
         return NOTHING
     if not (glyphs := typeset(it, a)):
         return NOTHING
@@ -485,11 +486,9 @@ def lettered(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
     extent = max(glyph.box[2] for glyph in glyphs) - min(glyph.box[0] for glyph in glyphs)
     assert height is not None
     fits = Comparison("<=", height * extent, way.length, LENGTH)
-    call = it.call_sites[-1]
-    place = it.place(call) or call.span
-    it.assertions.append(
-        Assertion(env.here, Condition("and", (fits,)), None, place.one_line, place, extent=extent)
-    )
+    said = place or node.span
+    both = Condition("and", (fits,))
+    it.assertions.append(Assertion(env.here, both, None, said.one_line, said, extent=extent))
     whole = env.scope.declaring().container
     if isinstance(whole, Geometry):
         whole.reach = reach

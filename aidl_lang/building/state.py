@@ -34,8 +34,8 @@ from aidl_lang.typecheck import Program
 
 if TYPE_CHECKING:
     from aidl_lang.building.attributes import Stated
+    from aidl_lang.building.calls import CallSite
     from aidl_lang.building.copies import Copier
-    from aidl_lang.building.overloads import CallSite
     from aidl_lang.common.lettering import Font
 
 
@@ -344,18 +344,22 @@ class Interpreter:
         hints: Sequence[str] = (),
         fix: Fix | None = None,
         secondary: Sequence[Label] = (),
+        *,
+        once: bool = False,
     ) -> None:
+        """Reports what is found at a node; `once`: not again of the same place, as a loop would.
+
+        Ends building if there are more errors than are reported.
+        """
         span = self.place(node)
         written = node.span if isinstance(node, ast.Node) else node
         if span is not None and written is not None and span.source is not written.source:
             inner = message if code in ("E0525", "E0604") else f"in the library, {message}"
             message = f"`{span.one_line}` does not work out: {inner}"
-            if any(d.code == code and d.span == span for d in self.diagnostics):
-                return  # the same cause, met again
-        self._add(Diagnostic(code, message, span, label, tuple(secondary), tuple(hints), fix))
-
-    def _add(self, found: Diagnostic) -> None:
-        """Adds a diagnostic; ends building if there are more errors than are reported."""
+            once = True
+        if once and any(d.code == code and d.span == span for d in self.diagnostics):
+            return
+        found = Diagnostic(code, message, span, label, tuple(secondary), tuple(hints), fix)
         self.diagnostics.append(found)
         self.errors += found.is_error
         if self.errors > MOST_ERRORS:
@@ -369,8 +373,7 @@ class Interpreter:
         """Reports that a call makes no sense of its arguments, at the call that the author wrote."""
         span = self.place(node)
         text = f"`{span.one_line}`" if span is not None else "this"
-        if not any(d.code == "E0342" and d.span == span for d in self.diagnostics):
-            self._add(Diagnostic("E0342", f"{text} says nothing: {why}", span, hints=tuple(hints)))
+        self.report("E0342", f"{text} says nothing: {why}", span, hints=hints, once=True)
 
     def spelled(self, node: ast.Name | ast.Identifier) -> str:
         """Returns the name as it is defined."""
