@@ -8,14 +8,13 @@ from functools import partial
 from typing import TypeAlias, TypeVar
 
 from aidl_lang.building import expression as ex
-from aidl_lang.building.calls import bound, hoist_values
+from aidl_lang.building.calls import arranged, bound
 from aidl_lang.building.coerce import as_written, whole
 from aidl_lang.building.copies import Copier, centre_of, motion_for
 from aidl_lang.building.curves import DIRECTIONS, STILL, Motion, after, turned, xy
-from aidl_lang.building.evaluate import evaluate, truth, turns
+from aidl_lang.building.evaluate import chosen, evaluate, hoist_values, turns
 from aidl_lang.building.expression import Place
 from aidl_lang.building.model import Geometry, Structure
-from aidl_lang.building.overloads import arranged
 from aidl_lang.building.state import Env, Interpreter, Scope
 from aidl_lang.building.values import (
     NOTHING,
@@ -129,16 +128,10 @@ def _among(
                 for turn in _tried(it, partial(turns, it, statement, env)) or ():
                     hoist_values(turn, body.statements)
                     yield from _among(it, body.statements, turn, wanted)
-            case ast.If(test, then, otherwise):
-                chosen = _tried(it, partial(_chosen, it, test, env))
-                taken = then if chosen else otherwise if chosen is not None else None
-                if taken is not None:
+            case ast.If():
+                if (taken := _tried(it, partial(chosen, it, statement, env))) is not None:
                     hoist_values(env, taken.statements)
                     yield from _among(it, taken.statements, env, wanted)
-
-
-def _chosen(it: Interpreter, test: ast.Expression, env: Env) -> bool:
-    return truth(it, evaluate(it, test, env), test)
 
 
 def _is_on(it: Interpreter, call: ast.Call, env: Env, wanted: tuple[str, tuple[int, ...]]) -> bool:

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 
 from aidl_lang.building import expression as ex
 from aidl_lang.building.boxes import SIDES, Box, foreseen, unmoved, with_measured
-from aidl_lang.building.calls import hoist_values
 from aidl_lang.building.coerce import as_point, numeric
 from aidl_lang.building.curves import ask_to_turn, defining
-from aidl_lang.building.evaluate import evaluate, truth, turns
+from aidl_lang.building.evaluate import evaluate, stated
 from aidl_lang.building.model import (
     Assertion,
     Comparison,
@@ -20,7 +19,7 @@ from aidl_lang.building.model import (
     Measurement,
     Structure,
 )
-from aidl_lang.building.state import Env, Interpreter, LetBinding, Reach
+from aidl_lang.building.state import Env, Interpreter, Reach
 from aidl_lang.building.values import (
     Array,
     ListVal,
@@ -454,7 +453,12 @@ def _numbers(it: Interpreter, value: Value, node: ast.Expression, env: Env) -> I
 def read_constraint(it: Interpreter, node: ast.Statement, env: Env) -> None:
     match node:
         case ast.Constrain(items=items):
-            _read_items(it, items.statements, env)
+            for inner, place in stated(it, items.statements, env):
+                read_constraint(it, inner, place)
+        case ast.Equation():
+            it.report("N0501", "`=` inside `constrain` is read as `==`", node, once=True)
+            if node not in it.program.rejected:
+                impose(it, node.meant, env)
         case ast.ExpressionStatement(value=value):
             impose(it, value, env)
         case ast.Prefer():
@@ -473,25 +477,3 @@ def _prefer(it: Interpreter, node: ast.Prefer, env: Env) -> None:
             it.report("E0511", f"a weight must be more than 0, and this is {weight:g}", node.weight)
             return
     impose(it, node.value, env, weight)
-
-
-def _read_items(it: Interpreter, statements: Sequence[ast.Statement], env: Env) -> None:
-    hoist_values(env, statements)
-    for node in statements:
-        match node:
-            case ast.For():
-                for turn in turns(it, node, env) or ():
-                    _read_items(it, node.body.statements, turn)
-            case ast.If():
-                test = evaluate(it, node.test, env)
-                if not isinstance(test, Nothing):
-                    chosen = node.then if truth(it, test, node.test) else node.otherwise
-                    _read_items(it, chosen.statements if chosen else (), env)
-            case ast.Equation():
-                it.report("N0501", "`=` inside `constrain` is read as `==`", node)
-                if node not in it.program.rejected:
-                    impose(it, node.meant, env)
-            case ast.Assign():
-                env.scope.values[node.name.text] = LetBinding(node.value, env.scope)
-            case _:
-                read_constraint(it, node, env)

@@ -8,13 +8,12 @@ from dataclasses import field, replace
 
 from aidl_lang.building import expression as ex
 from aidl_lang.building.attributes import read_attributes, read_own_attributes
-from aidl_lang.building.calls import declared_names, run_block
 from aidl_lang.building.coerce import as_point, numeric, whole
 from aidl_lang.building.construct import loose_point, refuses_measure
 from aidl_lang.building.copies import Copier
 from aidl_lang.building.curves import STILL, Motion, of_frame
 from aidl_lang.building.edits import GeometryPlacement, check_edit, edited, edits_on, is_edit
-from aidl_lang.building.evaluate import evaluate, truth, turns
+from aidl_lang.building.evaluate import declared_names, evaluate, run_block, truth, turns
 from aidl_lang.building.impose import record_assertion
 from aidl_lang.building.members import read_param
 from aidl_lang.building.model import Frame, Geometry, Holder, Structure, chain

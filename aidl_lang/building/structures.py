@@ -9,11 +9,11 @@ from pathlib import PurePath
 
 from aidl_lang.building import expression as ex
 from aidl_lang.building.attributes import read_attributes, settle_clips_in, settle_order
-from aidl_lang.building.calls import default_of, hoist_callables, hoist_values, run_block
+from aidl_lang.building.calls import default_of
 from aidl_lang.building.coerce import as_point, numeric
 from aidl_lang.building.construct import hidden_constraints, loose_place, solvable
 from aidl_lang.building.edits import Edits, edits_on, frame_edited
-from aidl_lang.building.evaluate import evaluate
+from aidl_lang.building.evaluate import evaluate, hoist_callables, hoist_values, run_block
 from aidl_lang.building.impose import read_constraint
 from aidl_lang.building.members import passed, read_param, report_unused
 from aidl_lang.building.model import Frame, Structure
@@ -54,7 +54,6 @@ from aidl_lang.syntax import ast
 
 # --- Ready-made cuts that are written in a hole: there they are circles, without depth or thread.
 
-_CODE = "W0504"
 _LOST = {
     "depth": "nothing is sunk, and all of it is cut through",
     "thread": "no drawing sheet tells of its thread",
@@ -89,7 +88,7 @@ def _tell(
 ) -> None:
     stated = (node.name.text for node in ast.walk(placed) if isinstance(node, ast.Attribute))
     said = next((name for name in stated if name in _LOST), None)
-    if said is None or any(d.code == _CODE and d.span == call.span for d in it.diagnostics):
+    if said is None:
         return
     name = hole.name.text
     hints = (
@@ -97,7 +96,7 @@ def _tell(
         f"or say it of this hole: `@{said}(…) hole {name} {{ … }}`",
     )
     message = f"in a `hole`, `{call.callee.text}` is a bare circle: {_LOST[said]}"
-    it.report(_CODE, message, call, hints=hints, fix=fix)
+    it.report("W0504", message, call, hints=hints, fix=fix, once=True)
 
 
 def _fix(hole: ast.Structure, statement: ast.Assign, placed: ast.Structure) -> Fix | None:
