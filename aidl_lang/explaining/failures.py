@@ -103,19 +103,18 @@ class _StatedMember:
     stated: Constraint
 
 
+@record(frozen=False, eq=False)
 class Explanation:
     """Why a group could not be solved, and remedies, which may be those of an `earlier` explanation."""
 
-    def __init__(
-        self,
-        lowered: Lowered,
-        solution: Solution,
-        failure: GroupFailure,
-        trials: Trials,
-        earlier: tuple[Explanation, ...],
-    ) -> None:
-        self.lowered, self.solution, self.failure, self.trials = lowered, solution, failure, trials
-        self.earlier = earlier
+    lowered: Lowered
+    solution: Solution
+    failure: GroupFailure
+    trials: Trials
+    earlier: tuple[Explanation, ...]
+
+    def __post_init__(self) -> None:
+        lowered, failure = self.lowered, self.failure
         self.is_proven = failure.reason in _PROVEN
         self.times = Counter(c.span for c in lowered.stated if c is not None)
         self.sizes = [self._size(i) for i in failure.conflict if lowered.stated[i] is None]
