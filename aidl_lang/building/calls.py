@@ -159,7 +159,6 @@ def bound(
 
 
 def _as_kind(it: Interpreter, value: Value, kind: Type, node: ast.Node, env: Env) -> Value | None:
-    """Returns an argument as the kind of value that its parameter asks for; other kinds stay as they are."""
     match kind:
         case NumberType(dimension=dimension) if isinstance(value, Num):
             same = value.dimension == dimension
@@ -202,8 +201,13 @@ def invoke(
         case ast.ConstraintDefinition():
             inner = _inside(it, candidate, arguments, definition.parameters, env)
             condition = run_items(it, definition.body, inner)
-            if condition is True and binding.gathered and len(values) == len(binding.arguments) == 1:
-                _says_nothing(it, node, values[0])
+            is_of_one = binding.gathered and len(values) == len(binding.arguments) == 1
+            if (
+                condition is True and is_of_one and members(values[0]) is None
+            ):  # the length of a list may vary
+                message = f"`{node.span.one_line}` says nothing: it relates two things or more"
+                hint = f"name what it is related to, as in `{node.callee.text}(a, b)`"
+                it.report("E0343", message, node, hints=[hint])
             condition = placing(condition, binding, values, env)
             is_stated = env.reach is Reach.SUBTREE and it.place(node) is node.span  # not by the library
             if is_of_directions(candidate.signature) and is_stated:
@@ -218,7 +222,6 @@ def invoke(
 def _inside(
     it: Interpreter, candidate: Candidate, arguments: Arguments, parameters: Sequence[ast.Parameter], env: Env
 ) -> Env:
-    """Returns the environment of the body of a definition: its parameters, with what they get."""
     inner = env.within(Scope(candidate.scope))
     for parameter, (name, kind, _) in zip(parameters, candidate.signature.parameters, strict=True):
         value = arguments.get(name)
@@ -249,14 +252,6 @@ def run_items(it: Interpreter, block: ast.Block, env: Env) -> Value:
                 message = "a constraint's body holds conditions, `let`, `for` and `if` only"
                 it.report("E0312", message, node)
     return all_of(found)
-
-
-def _says_nothing(it: Interpreter, node: ast.Call, only: Value) -> None:
-    """Reports a relation of several things that gets one; not of a list of one, since its length may vary."""
-    if members(only) is None:
-        message = f"`{node.span.one_line}` says nothing: it relates two things or more"
-        hint = f"name what it is related to, as in `{node.callee.text}(a, b)`"
-        it.report("E0343", message, node, hints=[hint])
 
 
 def _shape(it: Interpreter, candidate: Candidate, arguments: Arguments, node: ast.Call, env: Env) -> Value:
@@ -441,7 +436,6 @@ _PLACES = BoxType | PointType | GeometryType | StructureType
 
 
 def _delegates(definition: ast.ConstraintDefinition) -> bool:
-    """Tells whether a definition consists of one call, which then decides."""
     match definition.body.statements:
         case (ast.ExpressionStatement(value=ast.Call()),):
             return True
@@ -535,7 +529,6 @@ def site_of(it: Interpreter, node: ast.Call, candidates: Sequence[Candidate]) ->
 
 @lru_cache(maxsize=4096)
 def _standard_site(node: ast.Call, signatures: tuple[Signature, ...]) -> CallSite:
-    """Returns the site of a call within the library, which is the same for all programs."""
     return CallSite(node, list(signatures))
 
 

@@ -1,4 +1,8 @@
-"""`move`, `rotate` and `scale` as statements: they change a thing made above them."""
+"""`move`, `rotate` and `scale` as statements: they change a thing made above them.
+
+They are looked for when the thing is made, further down in its body, and applied to its arguments: first
+guesses and sizes as written change, their exactness does not.
+"""
 
 from __future__ import annotations
 
@@ -41,11 +45,6 @@ from aidl_lang.checking.units import ANGLE, LENGTH, UNITS
 from aidl_lang.common.names import fold
 from aidl_lang.common.records import record
 from aidl_lang.syntax import ast
-
-# --- `move`, `rotate` and `scale` as statements: they change a thing made above them.
-#
-# They are looked for when the thing is made, further down in its body, and applied to its arguments: first
-# guesses and sizes as written change, their exactness does not.
 
 T = TypeVar("T")
 
@@ -303,10 +302,8 @@ def check_edit(it: Interpreter, call: ast.Call, env: Env) -> None:
         why = f"`{shown}` has members"
         hint = f"`{word}` them one by one, as in `for i in … {{ {word}({shown}[i], …) }}`"
     else:
-        why, hint = (
-            f"`{shown}` is not made in this body above this line",
-            f"write it below the line that makes `{shown}`, in the same structure",
-        )
+        why = f"`{shown}` is not made in this body above this line"
+        hint = f"write it below the line that makes `{shown}`, in the same structure"
     it.report("E0333", f"`{word}` changes nothing here: {why}", call, hints=[hint])
 
 
@@ -481,7 +478,6 @@ def _at(x: float, y: float) -> PointVal:
 
 
 def _are_alike(a: Geometry, b: Geometry) -> bool:
-    """Tells whether two geometries draw the same curves as written."""
     one, other = list(a.primitives()) or [a], list(b.primitives()) or [b]
     return len(one) == len(other) and all(map(_is_same, one, other))
 

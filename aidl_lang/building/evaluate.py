@@ -60,7 +60,8 @@ def evaluate(it: Interpreter, node: ast.Expression, env: Env) -> Value:
     if it.watched and node in it.watched:
         if isinstance(value, Geometry):
             value = as_point(it, value, node, env) or value
-        it.watch(node, value)
+        if isinstance(value, Num | PointVal):
+            it.written[node] = value.value if isinstance(value, Num) else value.place.written
         return as_written(value)
     return value
 
@@ -216,8 +217,7 @@ def _index(it: Interpreter, node: ast.Index, env: Env) -> Value:
     if isinstance(value, RecordVal) and isinstance(index, TextVal):
         return entry(it, value, index.value, node.index)
     if (items := members(value)) is None:
-        it.misfit(rules.no_members(shown(node.value), type_of(value)), node)
-        return NOTHING
+        return it.misfit(rules.no_members(shown(node.value), type_of(value)), node)
     if (position := whole(it, index, node.index, "an index")) is None:
         return NOTHING
     if isinstance(value, Array):
@@ -274,7 +274,6 @@ def _binary(it: Interpreter, node: ast.Binary, env: Env) -> Value:
 
 
 def _vector(it: Interpreter, node: ast.Binary, left: Value, right: Value) -> Value:
-    """Evaluates points as vectors: sum, difference, and product or quotient with a number."""
     op = node.operator
     if isinstance(left, PointVal) and isinstance(right, PointVal) and op in "+-":
         x, y = arithmetic(it, op, left.x, right.x, node), arithmetic(it, op, left.y, right.y, node)
@@ -284,8 +283,7 @@ def _vector(it: Interpreter, node: ast.Binary, left: Value, right: Value) -> Val
         x, y = arithmetic(it, op, left, right.x, node), arithmetic(it, op, left, right.y, node)
     else:
         sides = shown(node.left), shown(node.right)
-        it.misfit(rules.no_vectors(op, type_of(left), type_of(right), *sides), node)
-        return NOTHING
+        return it.misfit(rules.no_vectors(op, type_of(left), type_of(right), *sides), node)
     return PointVal(x, y) if isinstance(x, Num) and isinstance(y, Num) else NOTHING
 
 
@@ -318,11 +316,9 @@ def arithmetic(it: Interpreter, op: str, a: Num, b: Num, node: ast.Node) -> Num 
         else:
             dimension = _DIMENSION[op](a.dimension, b.dimension)
     except units.UnequalError as pair:
-        it.misfit(rules.unequal(f"`{op}` does not join", *pair.args), node)
-        return NOTHING
+        return it.misfit(rules.unequal(f"`{op}` does not join", *pair.args), node)
     except ValueError as reason:
-        it.report("E0308", f"`{op}` has no meaning here: {reason}", node)
-        return NOTHING
+        return it.report("E0308", f"`{op}` has no meaning here: {reason}", node)
     if op == "%":
         x, y = (constant(it, n, node, "an operand of `%`") for n in (a, b))
         if x is None or y is None:
@@ -356,8 +352,7 @@ def _out_of_range(it: Interpreter, node: ast.Node) -> Nothing:
 
 
 def _no_value(it: Interpreter, node: ast.Node, why: str, *hints: str) -> Nothing:
-    it.report("E0504", f"`{node.span.one_line}` has no value: {why}", node, hints=hints)
-    return NOTHING
+    return it.report("E0504", f"`{node.span.one_line}` has no value: {why}", node, hints=hints)
 
 
 def _comparison(it: Interpreter, node: ast.Comparison, env: Env) -> Value:
@@ -379,8 +374,7 @@ def _membership(it: Interpreter, node: ast.Membership, env: Env) -> Value:
         high = compare(it, "<" if container.exclusive else "<=", value, container.end, node, env, sides)
         return conjunction(it, "and", low, high, node)
     if (items := members(container)) is None:
-        it.misfit(rules.needed("a range or a list", type_of(container)), node.container)
-        return NOTHING
+        return it.misfit(rules.needed("a range or a list", type_of(container)), node.container)
     result: Value = False
     for item in items:
         equal = compare(it, "==", value, item, node, env, sides)
@@ -397,8 +391,7 @@ def _range(it: Interpreter, node: ast.Range, env: Env) -> Value:
         dimension = units.add(start.dimension, end.dimension)
         dimension = units.add(dimension, step.dimension) if step is not None else dimension
     except units.UnequalError as pair:
-        it.misfit(rules.unequal("a range does not join", *pair.args), node)
-        return NOTHING
+        return it.misfit(rules.unequal("a range does not join", *pair.args), node)
     low, high = (Num(n.expression, dimension, n.status) for n in (start, end))
     return RangeVal(low, high, node.exclusive, step)
 

@@ -43,7 +43,6 @@ from aidl_lang.building.wording import (
     compared,
     differences,
     givens,
-    placed_by,
     rounding,
     sides,
     value_unknowns,
@@ -195,7 +194,6 @@ def _turn(env: Env) -> str:
 
 
 def _never(wording: Wording, weight: float | None) -> None:
-    """Reports a condition, or a wish, over constants that is false."""
     it, node = wording.it, wording.node
     if any(part in it.watched for part in ast.walk(node)):
         return  # reported as a breach of validity, and read with values as written
@@ -331,7 +329,6 @@ def _look_again(
 
 
 def _is_angle(node: ast.Node) -> bool:
-    """Tells whether a part of a statement asks for the direction of something."""
     match node:
         case ast.Member(name=name) | ast.Call(callee=name):
             return fold(name.text) == "angle"
@@ -386,7 +383,7 @@ def _placed_in_call(said: Wording, comparisons: list[Comparison]) -> list[Compar
         return comparisons
     values = [evaluate(said.it, p, said.env) for p in positional[:-1]]
     placed = frozenset(u for v in values for u in value_unknowns(v, said.env.here))
-    return [placed_by(c, c.placed & placed or c.placed) for c in comparisons]
+    return [replace(c, moved=c.placed & placed or c.placed, parties=()) for c in comparisons]
 
 
 def record_assertion(it: Interpreter, node: ast.Assert, env: Env, shape: str = "") -> None:

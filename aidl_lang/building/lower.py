@@ -1,4 +1,8 @@
-"""The step from Model to Problem: the structure tree for the solver, unknowns and constraints by number."""
+"""The step from Model to Problem: the structure tree for the solver, unknowns and constraints by number.
+
+The solver's groups are the structures, parents first. Unknowns that nothing can move are constants there: a
+frame that no constraint mentions, an argument that was read while building, an angle that nothing turns.
+"""
 
 from __future__ import annotations
 
@@ -28,11 +32,6 @@ from aidl_lang.solver import Constraint as SolverConstraint
 from aidl_lang.solver import Problem, Relation, Row
 from aidl_lang.solver.expression import TapeBuilder
 from aidl_lang.solver.problem import constraint_arrays
-
-# --- The step from Model to Problem: the structure tree for the solver, unknowns and constraints by number.
-#
-# The solver's groups are the structures, parents first. Unknowns that nothing can move are constants there:
-# a frame that no constraint mentions, an argument that was read while building, an angle that nothing turns.
 
 _RADIAN = 180.0 / np.pi
 
@@ -117,7 +116,9 @@ class _Lowering:
             scale=np.array([_RADIAN / self.size if u.angular else 1.0 for u in found], dtype=np.float64),
             kept=np.array([u.kept for u in found], dtype=np.bool_),
             group=np.array([self.groups[self._placer(u)] for u in found], dtype=np.intp),
-            frame_of=np.array([self._frame_of(u) for u in found], dtype=np.intp),
+            frame_of=np.array(
+                [self.groups[m] if (m := self._moved(u)) else -1 for u in found], dtype=np.intp
+            ),
             axis=np.array([_axis(u) for u in found], dtype=np.intp),
             longest=np.array([_LONGEST_TURN if u.angular else np.inf for u in found], dtype=np.float64),
             parent=np.array(parents, dtype=np.intp),
@@ -172,9 +173,9 @@ class _Lowering:
     def _is_outline(self, unknown: Unknown) -> bool:
         return unknown.outline and unknown in self.mentioned and unknown.owner not in self.holders
 
-    def _frame_of(self, unknown: Unknown) -> int:
-        moved = unknown.owner if self._is_outline(unknown) else unknown.frame_of
-        return self.groups[moved] if moved is not None else -1
+    def _moved(self, unknown: Unknown) -> Structure | None:
+        """Returns the structure that an unknown moves as a whole; None for one of its contents."""
+        return unknown.owner if self._is_outline(unknown) else unknown.frame_of
 
     def _stands(self, unknown: Unknown) -> bool:
         """Tells whether an unknown shifts a frame that lies on its parent's, with something in it at an exact
@@ -211,8 +212,8 @@ class _Lowering:
             for structure, sides in comparison.boxes.items():
                 self._name_thing(constraint.holder, structure, sides)
             for unknown in comparison.spoken_of:
-                if unknown.frame_of is not None or self._is_outline(unknown):
-                    self._name_thing(constraint.holder, unknown.frame_of or unknown.owner, None)
+                if (moved := self._moved(unknown)) is not None:
+                    self._name_thing(constraint.holder, moved, None)
                 elif not unknown.kept:
                     thing = unknown.holder, unknown.field.rpartition(".")[0]
                     self._name_thing(constraint.holder, unknown.owner, thing)
@@ -277,7 +278,7 @@ class _Lowering:
                     inside.add(structure)
                 mentioned.update(ex.unknowns(_places(structure, constraint.holder)))
             for unknown in mentioned:
-                moved = unknown.owner if self._is_outline(unknown) else unknown.frame_of
+                moved = self._moved(unknown)
                 (inside if moved is None else whole).add(moved or unknown.owner)
         return whole, inside
 
@@ -372,7 +373,6 @@ def _axis(unknown: Unknown) -> int:
 
 
 def _places(structure: Structure, holder: Structure) -> Iterator[Expression]:
-    """Yields the frames that place a structure in the one that holds it."""
     for frame in (s.frame for s in chain(structure, holder)):
         yield from (frame.x, frame.y, frame.rotation)
 
@@ -415,7 +415,6 @@ def _is_spanned(unknown: Unknown) -> bool:
 
 
 def _numbered(keys: Iterable[Hashable]) -> NDArray[np.intp]:
-    """Returns a number for each key, the same for equal ones."""
     numbers: dict[Hashable, int] = {}
     return np.array([numbers.setdefault(key, len(numbers)) for key in keys], dtype=np.intp)
 

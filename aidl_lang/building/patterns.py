@@ -1,4 +1,8 @@
-"""Many of a thing, laid out by a pitch, a radius or a curve, and texts along curves."""
+"""Many of a thing, laid out by a pitch, a radius or a curve, and texts along curves.
+
+These are built in because they make structures, which no definition of the language can do. A template is
+instantiated once; the other members are copies over the same unknowns.
+"""
 
 from __future__ import annotations
 
@@ -10,7 +14,7 @@ from typing import TYPE_CHECKING
 from aidl_lang.building import expression as ex
 from aidl_lang.building.boxes import box_of
 from aidl_lang.building.coerce import whole
-from aidl_lang.building.construct import positions, size
+from aidl_lang.building.construct import bridge, is_filled, positions, size, typeset
 from aidl_lang.building.copies import centre_of, copied
 from aidl_lang.building.curves import NOWHERE, Motion, defining, turned, xy
 from aidl_lang.building.expression import Expression, Place
@@ -43,13 +47,6 @@ from aidl_lang.syntax import ast
 if TYPE_CHECKING:
     from aidl_lang.building.along import Way
 
-# --- `linear_array`, `grid`, `polar_array` and `along`: many of a thing, laid out by a pitch, a radius, a
-# curve.
-#
-# They are built in because they make structures, which no definition of the language can do. A template is
-# instantiated once; the other members are copies over the same unknowns.
-
-
 _ORIGIN = PointVal(number(0.0, LENGTH), number(0.0, LENGTH))
 
 
@@ -64,8 +61,7 @@ class _Call:
     settings: Geometry
 
     def wrong(self, message: str, hint: str) -> Nothing:
-        self.it.report("E0332", message, self.node, hints=[hint])
-        return NOTHING
+        return self.it.report("E0332", message, self.node, hints=[hint])
 
     def count(self, name: str) -> int | None:
         found = whole(self.it, self.a[name], self.node, f"`{name}`")
@@ -140,12 +136,9 @@ class _Call:
         spans = [[box.side(side).value for side in sides] for sides in (("left", "right"), ("bottom", "top"))]
         if any(at.value and low * high > 0 for at, (low, high) in zip(place, spans, strict=True)):
             x, y = (f"{(low + high) / 2:g}" for low, high in spans)
-            self.it.report(
-                "W0511",
-                f"what is repeated stands at ({x}, {y}) already, which is added to the place of the row",
-                self.node,
-                hints=["write it around the origin; or give no place: the row begins where it stands"],
-            )
+            message = f"what is repeated stands at ({x}, {y}) already, which is added to the place of the row"
+            hint = "write it around the origin; or give no place: the row begins where it stands"
+            self.it.report("W0511", message, self.node, hints=[hint])
 
     def laid_out(self, motions: Iterable[tuple[Indices, Motion | None]]) -> Value:
         """Returns the members; one without a motion is the thing itself."""
@@ -284,8 +277,7 @@ def _along(call: _Call) -> Value:
         return NOTHING
     if len(places) * len(way.stretches) > _MOST_ALONG:
         what = f"{len(places)} members along {len(way.stretches)} curves are too many"
-        call.it.report("E0805", f"{what}: their product is at most {_MOST_ALONG}", call.node)
-        return NOTHING
+        return call.it.report("E0805", f"{what}: their product is at most {_MOST_ALONG}", call.node)
     turns = call.a.get("turn") is not False
     about = call.centre()
 
@@ -441,7 +433,6 @@ _UPRIGHT = TextVal("upright")  # the side of a curve that is not told
 def lettered(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
     """Returns the characters of a text along a curve, each a geometry that stands upright on it."""
     from aidl_lang.building.along import KINDS, reading_way
-    from aidl_lang.building.lettering import bridge, is_filled, typeset
     from aidl_lang.common.lettering import ALIGNMENTS
 
     given = [v for v in spliced(a["curve"]) if isinstance(v, Geometry)]
@@ -451,8 +442,7 @@ def lettered(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
     if inside != _UPRIGHT and not isinstance(inside, bool):
         what = f"`inside` is {kind_of(inside)}, and tells the side of a curve by true or false"
         hint = "leave it out for the side on which it is upright"
-        it.report("E0516", what, place, hints=[hint], once=True)
-        return NOTHING
+        return it.report("E0516", what, place, hints=[hint], once=True)
     side = inside if isinstance(inside, bool) else None
     way = reading_way(curves, env.here, inside=side) if curves and is_simple else None
     if way is None:
@@ -460,8 +450,7 @@ def lettered(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
         message = f"a text follows a circle, or an open way of lines and arcs, and this is {what}"
         hint = "name an edge of an outline, as in `along: plate.top`, or draw a guide near it: "
         hint += "`construction way = arc(…)`"
-        it.report("E0358", message, place, hints=[hint], once=True)
-        return NOTHING
+        return it.report("E0358", message, place, hints=[hint], once=True)
     if not (glyphs := typeset(it, a)):
         return NOTHING
     share = 0.5 if way.is_closed else ALIGNMENTS[certain(a["align"], TextVal).value]

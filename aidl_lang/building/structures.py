@@ -6,6 +6,7 @@ import re
 from collections.abc import Callable, Mapping
 from functools import cache
 from pathlib import PurePath
+from typing import Any
 
 from aidl_lang.building import expression as ex
 from aidl_lang.building.attributes import read_attributes, settle_clips_in, settle_order
@@ -332,19 +333,15 @@ def _bring_in(scope: Scope, inner: Scope, statement: ast.Import, *, is_drawing: 
             scope.callables[statement.alias.text] = inner.callables[WHOLE]
         return
     wanted = {name.text for name in statement.names}
-
-    def is_wanted(name: str) -> bool:
-        return not wanted or name in wanted
-
-    for name, binding in inner.values.items():
-        if is_wanted(name):
-            scope.values.setdefault(name, binding)
-    for name, candidates in inner.callables.items():
-        if is_wanted(name):
-            scope.callables.setdefault(name, candidates)
-    for name, target in inner.aliases.items():
-        if is_wanted(name):
-            scope.aliases.setdefault(name, target)
+    tables: list[tuple[dict[str, Any], dict[str, Any]]] = [
+        (scope.values, inner.values),
+        (scope.callables, inner.callables),
+        (scope.aliases, inner.aliases),
+    ]
+    for own, other in tables:
+        for name, meaning in other.items():
+            if not wanted or name in wanted:
+                own.setdefault(name, meaning)
 
 
 def _library_scope(library: Library) -> Scope:

@@ -65,8 +65,7 @@ def compare(
 
     def incomparable() -> Nothing:
         texts = map(shown, sides)
-        it.misfit(rules.no_comparison(relation, type_of(left), type_of(right), *texts), node)
-        return NOTHING
+        return it.misfit(rules.no_comparison(relation, type_of(left), type_of(right), *texts), node)
 
     if isinstance(left, Nothing) or isinstance(right, Nothing):
         return NOTHING
@@ -106,7 +105,6 @@ def _one_by_one(relation: str, left: Value, right: Value) -> list[tuple[Value, V
 
 
 def _is_pair(values: Sequence[Value]) -> bool:
-    """Tells whether the members of a list may be the coordinates of a point."""
     return len(values) == 2 and all(isinstance(value, Num) for value in values)
 
 
@@ -116,8 +114,7 @@ def _is_point(value: Value) -> bool:
 
 def _compare_points(it: Interpreter, relation: str, a: PointVal, b: PointVal, node: ast.Node) -> Value:
     if relation not in ("==", "!="):
-        it.misfit(rules.no_order(relation), node)
-        return NOTHING
+        return it.misfit(rules.no_order(relation), node)
     both = conjunction(
         it, "and", compare_numbers(it, "==", a.x, b.x, node), compare_numbers(it, "==", a.y, b.y, node), node
     )
@@ -128,13 +125,18 @@ def compare_numbers(it: Interpreter, relation: str, a: Num, b: Num, node: ast.No
     try:
         dimension = units.add(a.dimension, b.dimension)
     except units.UnequalError as pair:
-        it.misfit(rules.unequal(f"`{relation}` does not compare", *pair.args), node)
-        return NOTHING
+        return it.misfit(rules.unequal(f"`{relation}` does not compare", *pair.args), node)
     left, right = spelled_out(a.expression, b.expression, equal=relation == "==", whole=it.whole_boxes)
     if left.is_constant and right.is_constant:
         return _relates(relation, left.value, right.value, dimension == ANGLE, EXACT, strict=True)
     boxes, beside = boxes_in(a.expression, b.expression)
     return Condition("and", (Comparison(relation, left, right, dimension, None, boxes, beside),))
+
+
+def equated(it: Interpreter, pairs: Iterable[tuple[Num, Num]], node: ast.Node) -> tuple[Comparison, ...]:
+    """Returns the comparisons that hold numbers equal, pair by pair; none for constants."""
+    conditions = (compare_numbers(it, "==", a, b, node) for a, b in pairs)
+    return tuple(c for made in conditions if isinstance(made, Condition) for c in made.comparisons())
 
 
 def _relates(
@@ -158,8 +160,7 @@ def conjunction(it: Interpreter, operator: str, left: Value, right: Value, node:
         return NOTHING
     for side in (left, right):
         if not isinstance(side, bool | Condition):
-            it.misfit(rules.needed("a condition", type_of(side)), node)
-            return NOTHING
+            return it.misfit(rules.needed("a condition", type_of(side)), node)
     neutral = operator == "and"
     if left is neutral:
         return right
@@ -182,8 +183,7 @@ def negation(it: Interpreter, value: Value, node: ast.Node) -> Value:
         case Nothing():
             return NOTHING
         case _:
-            it.misfit(rules.needed("a condition", type_of(value)), node)
-            return NOTHING
+            return it.misfit(rules.needed("a condition", type_of(value)), node)
 
 
 def all_of(parts: Iterable[Value]) -> Value:
@@ -221,16 +221,12 @@ def holds(condition: Part, evaluate: Evaluate, tolerance: float, *, strict: bool
 Parties: TypeAlias = tuple[frozenset[Unknown], ...]
 
 
-def placed_by(comparison: Comparison, placed: frozenset[Unknown], parties: Parties = ()) -> Comparison:
-    return replace(comparison, moved=placed, parties=parties)
-
-
 def replace_placed(condition: Condition, placed: frozenset[Unknown], parties: Parties = ()) -> Condition:
     """Returns the same condition, with other unknowns moving first."""
     parts: list[Part] = []
     for part in condition.parts:
         if isinstance(part, Comparison):
-            part = placed_by(part, placed, parties)
+            part = replace(part, moved=placed, parties=parties)
         parts.append(replace_placed(part, placed, parties) if isinstance(part, Condition) else part)
     return Condition(condition.operator, tuple(parts))
 
