@@ -123,10 +123,7 @@ def test_writing(suffix: str) -> None:
 
 @pytest.mark.parametrize(
     ("verb", "doing"),
-    [
-        (["measure", "plates.aidl"], "measuring"),
-        (["diff", "plates.aidl", "--to", "wide=30"], "comparing"),
-    ],
+    [(["measure", "plates.aidl"], "measuring"), (["diff", "plates.aidl", "--to", "wide=30"], "comparing")],
 )
 @pytest.mark.usefixtures("hurried")
 def test_the_command_says_so(

@@ -6,14 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from aidl_lang.common.world import (
-    DiskWorld,
-    FileError,
-    MemoryWorld,
-    ReadFailure,
-    Reads,
-    World,
-)
+from aidl_lang.common.world import DiskWorld, FileError, MemoryWorld, ReadFailure, Reads, World
 
 
 @pytest.fixture(params=["disk", "memory"])

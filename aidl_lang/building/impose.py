@@ -99,7 +99,7 @@ def record_dimension(it: Interpreter, node: ast.Call, env: Env) -> None:
         hint = "`tolerance: 0.1` is written as ±0.1"
         it.report("E0590", "a tolerance is above 0", options(node)["tolerance"], hints=[hint])
     else:
-        it.by_hand.append(_constraint(Wording(node, it, env, evaluate), ()))
+        it.by_hand.append(_constraint(Wording(node, it, env), ()))
 
 
 def axis_of(node: ast.Expression, value: Value) -> int | None:
@@ -137,11 +137,11 @@ def impose(it: Interpreter, node: ast.Expression, env: Env, weight: float | None
         for inner in handed:
             impose(it, inner, env, weight)
         return
-    said = Wording(node, it, env, _read)
+    said = Wording(node, it, env)
     if isinstance(node, ast.Call) and _holds_place(it, node):
         value = _held(it, node, env)
     else:
-        value = _read(it, node, env)
+        value = evaluate(it, _as_relation(node), env)
     match value:
         case bool() if it.states_constants and weight is None:
             _state_constants(said)
@@ -368,10 +368,6 @@ def _impose_within(said: Wording, shape: Geometry, comparisons: list[Comparison]
         said.it.add_constraint(Constraint(said.env.here, own, text, shape.span, None, turn, is_inherent=True))
 
 
-def _read(it: Interpreter, node: ast.Expression, env: Env) -> Value:
-    return evaluate(it, _as_relation(node), env)
-
-
 def _placed_in_call(said: Wording, comparisons: list[Comparison]) -> list[Comparison]:
     """Holds the last argument of the call in `distance(a, b) == 18`, as in every call."""
     node = said.node
@@ -396,7 +392,7 @@ def record_assertion(it: Interpreter, node: ast.Assert, env: Env, shape: str = "
         return
     message = evaluate(it, node.message, env) if node.message is not None else None
     told = message.value if isinstance(message, TextVal) else None
-    wording = Wording(node.test, it, env, evaluate)
+    wording = Wording(node.test, it, env)
     if value is False and shape:
         why = told if told is not None else f"`{node.test.span.one_line}` is false"
         false = differences(wording, ex.Evaluator({}), EXACT)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
-from typing import TypeAlias
+from typing import TypeAlias, TypeVar
 
 from aidl_lang.building import expression as ex
 from aidl_lang.building.boxes import box_of, boxes_in, source_unknowns, spelled_out
@@ -41,6 +41,7 @@ from aidl_lang.syntax import ast
 
 # --- Conditions: comparing values, joining comparisons, and testing whether a condition holds.
 
+T = TypeVar("T")
 Evaluate = Callable[[Expression], float]
 
 RELATIONS = ("==", "<=", ">=", "<", ">")
@@ -243,49 +244,47 @@ def value_unknowns(value: Value, here: Structure) -> Iterator[Unknown]:
 
 # --- A statement that constrains, kept so that it can be read again, part by part, at its place.
 
-Read = Callable[[Interpreter, ast.Expression, Env], Value]
-"""Evaluates a statement in an environment."""
-
 
 @record(eq=False)
 class Wording:
-    """A statement that can be read again: `node` as it was written; `read` evaluates it, or a part of it."""
+    """A statement that can be read again: `node` as it was written, or a part of it."""
 
     node: ast.Expression
     it: Interpreter
     env: Env
-    read: Read
 
     def held(self) -> Iterator[str]:
         """Yields the texts of parts of the statement that no solving moves."""
-        stack: list[ast.Node] = [self.node]
-        while stack:
-            node = stack.pop()
-            if isinstance(node, ast.Name | ast.Member | ast.Index) and _is_exact(self.value(node)):
-                yield node.span.text
-            else:
-                stack.extend(reversed(list(ast.children(node))))
+        return self._of_names(lambda node, value: [node.span.text] if _is_exact(value) else [])
 
     def named(self) -> Iterator[Geometry | Structure]:
         """Yields the geometry and structures that the statement mentions, as far as each name in it leads."""
+
+        def things(node: ast.Node, value: Value | None) -> list[Geometry | Structure]:
+            values = () if value is None else (value, *(members(value) or ()))
+            return [v for v in values if isinstance(v, Geometry | Structure)]
+
+        return self._of_names(things)
+
+    def _of_names(self, found_in: Callable[[ast.Node, Value | None], list[T]]) -> Iterator[T]:
+        """Yields what is found in the longest names of the statement that have something."""
         stack: list[ast.Node] = [self.node]
         while stack:
             node = stack.pop()
-            if isinstance(node, ast.Name | ast.Member | ast.Index):
-                value = self.value(node)
-                values = () if value is None else (value, *(members(value) or ()))
-                found = [v for v in values if isinstance(v, Geometry | Structure)]
-                yield from found
-                if found:
-                    continue
-            stack.extend(reversed(list(ast.children(node))))
+            found = (
+                found_in(node, self.value(node))
+                if isinstance(node, ast.Name | ast.Member | ast.Index)
+                else []
+            )
+            yield from found
+            stack.extend([] if found else reversed(list(ast.children(node))))
 
     def value(self, node: ast.Expression) -> Value | None:
         """Returns the value of a part of the statement at its place; None if that takes too long."""
         it = self.it
         try:
             with limited_to(it.limits.seconds):
-                return self.read(it, node, self.env)
+                return it.evaluate(node, self.env)
         except Stop:
             return None
 
