@@ -436,16 +436,12 @@ _PLACES = BoxType | PointType | GeometryType | StructureType
 
 
 def _delegates(definition: ast.ConstraintDefinition) -> bool:
-    match definition.body.statements:
-        case (ast.ExpressionStatement(value=ast.Call()),):
-            return True
-        case _:
-            return False
+    only = definition.body.statements[0] if len(definition.body.statements) == 1 else None
+    return isinstance(only, ast.ExpressionStatement) and isinstance(only.value, ast.Call)
 
 
 # --- The choice of a definition for a call, among the overloads of its name.
 
-_NO_NAMES: Mapping[ast.Node, Symbol] = {}
 _DRAWING = PATTERNS.union(PUBLIC)
 
 
@@ -462,9 +458,7 @@ class CallSite:
     draws          whether one of them makes geometry that the solver may move
     """
 
-    def __init__(
-        self, node: ast.Call, signatures: list[Signature], names: Mapping[ast.Node, Symbol] = _NO_NAMES
-    ) -> None:
+    def __init__(self, node: ast.Call, signatures: list[Signature], names: Mapping[ast.Node, Symbol]) -> None:
         self.node = node
         self.signatures = signatures
         self.nodes = tuple(a.value for a in node.arguments)
@@ -529,7 +523,7 @@ def site_of(it: Interpreter, node: ast.Call, candidates: Sequence[Candidate]) ->
 
 @lru_cache(maxsize=4096)
 def _standard_site(node: ast.Call, signatures: tuple[Signature, ...]) -> CallSite:
-    return CallSite(node, list(signatures))
+    return CallSite(node, list(signatures), {})
 
 
 _MOST_MEANINGS = 100  # of one call; lists of every length are types of their own

@@ -15,6 +15,7 @@ from aidl_lang.building.construct import part as traced_part
 from aidl_lang.building.construct import typeset
 from aidl_lang.building.curves import xy
 from aidl_lang.building.expression import DEGREE, Expression
+from aidl_lang.building.measured import FORMULAS, OTHERWISE, centroid, formula
 from aidl_lang.building.model import Assertion, Condition, Geometry, Measurement, Structure
 from aidl_lang.building.outlines import OPERATIONS
 from aidl_lang.building.patterns import lettered
@@ -41,6 +42,7 @@ from aidl_lang.checking import rules, units
 from aidl_lang.checking.units import ANGLE, AREA, LENGTH, PLAIN, Dimension, MaybeDimension
 from aidl_lang.common.colors import css_color, rgb, similar_colors
 from aidl_lang.common.diagnostics import Edit, Fix
+from aidl_lang.common.lettering import box_around
 from aidl_lang.common.names import find, nearest
 from aidl_lang.common.prose import did_you_mean
 from aidl_lang.common.source import Span
@@ -364,8 +366,6 @@ def _measure(kind: str, dimension: Dimension) -> Function:
 
 
 def _centroid(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
-    from aidl_lang.building.measured import FORMULAS, OTHERWISE, centroid, formula
-
     of = a["of"]
     found = centroid(of, env.here) if isinstance(of, Geometry) else None
     if found is None or not isinstance(of, Geometry):
@@ -382,8 +382,6 @@ def _centroid(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
 
 def _ink(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
     """Returns the box of the letters around the start of the first line, in heights of a capital."""
-    from aidl_lang.common.lettering import box_around
-
     if not (glyphs := typeset(it, a)):
         return NOTHING
     sides = zip(("left", "bottom", "right", "top"), box_around(glyphs), strict=True)

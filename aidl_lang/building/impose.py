@@ -10,6 +10,7 @@ from aidl_lang.building.boxes import SIDES, Box, foreseen, unmoved, with_measure
 from aidl_lang.building.coerce import as_point, numeric
 from aidl_lang.building.curves import ask_to_turn, defining
 from aidl_lang.building.evaluate import evaluate, stated
+from aidl_lang.building.measured import FORMULAS, OTHERWISE, formula
 from aidl_lang.building.model import (
     Assertion,
     Comparison,
@@ -239,8 +240,6 @@ def _refuses_measured(it: Interpreter, comparisons: Iterable[Comparison], node: 
     """Reports a condition on what is known once all is solved. Returns whether it did."""
     if all(measurement.kind in SIDES for measurement in _measurements(comparisons)):
         return False
-    from aidl_lang.building.measured import FORMULAS
-
     message = "areas, perimeters and clearances of outlines are known after solving only"
     instead = "put it in an `assert`, or constrain boxes and distances instead"
     apart = "`clearance` constrains between points, lines, circles, slots and convex shapes; name these"
@@ -302,8 +301,6 @@ def _by_formulas(said: Wording, comparisons: list[Comparison], weight: float | N
     """Returns comparisons with areas and perimeters by their formulas; what is drawn is measured again."""
     if all(m.kind in SIDES for m in _measurements(comparisons)):
         return comparisons
-    from aidl_lang.building.measured import OTHERWISE, formula
-
     sides = (with_measured(formula, c.left, c.right) for c in comparisons)
     found = [replace(c, left=a, right=b) for c, (a, b) in zip(comparisons, sides, strict=True)]
     if weight is None and all(m.kind in SIDES for m in _measurements(found)):

@@ -9,9 +9,9 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Sequence
 from itertools import pairwise, product
-from typing import TYPE_CHECKING
 
 from aidl_lang.building import expression as ex
+from aidl_lang.building.along import FREE_KINDS, KINDS, Way, crossings, reading_way, way_along, within
 from aidl_lang.building.boxes import box_of
 from aidl_lang.building.coerce import whole
 from aidl_lang.building.construct import bridge, is_filled, positions, size, typeset
@@ -40,12 +40,10 @@ from aidl_lang.building.values import (
     spliced,
 )
 from aidl_lang.checking.units import ANGLE, LENGTH
+from aidl_lang.common.lettering import ALIGNMENTS
 from aidl_lang.common.prose import with_article
 from aidl_lang.common.records import record
 from aidl_lang.syntax import ast
-
-if TYPE_CHECKING:
-    from aidl_lang.building.along import Way
 
 _ORIGIN = PointVal(number(0.0, LENGTH), number(0.0, LENGTH))
 
@@ -257,8 +255,6 @@ def _step(call: _Call, n: int) -> Expression:
 
 
 def _along(call: _Call) -> Value:
-    from aidl_lang.building.along import within
-
     way = _way(call)
     off: list[Expression] = []
     corners: list[Expression] = []
@@ -339,8 +335,6 @@ _MOST_ALONG = 20_000  # members times curves: each place is worked out over all 
 
 
 def _way(call: _Call) -> Way | None:
-    from aidl_lang.building.along import way_along
-
     curves = _curves(call)
     found = way_along(curves, call.env.here) if curves else None
     if curves is not None and found is None:
@@ -350,8 +344,6 @@ def _way(call: _Call) -> Way | None:
 
 
 def _curves(call: _Call) -> list[Geometry] | None:
-    from aidl_lang.building.along import FREE_KINDS, KINDS
-
     given = [v for v in spliced(call.a["curve"]) if isinstance(v, Geometry)]
     drawn = [p for g in given for p in g.primitives(even_construction=True)]
     curves = [p for p in drawn if p.type != "point"]
@@ -365,8 +357,6 @@ def _curves(call: _Call) -> list[Geometry] | None:
 
 def _point_at(call: _Call) -> Value:
     """Returns the point of curves at a length from their start, or the first or last that has an x or a y."""
-    from aidl_lang.building.along import crossings
-
     at, axis = certain(call.a["at"], Num), call.a.get("axis")
     if axis is None:
         if (way := _way(call)) is None:
@@ -432,9 +422,6 @@ _UPRIGHT = TextVal("upright")  # the side of a curve that is not told
 
 def lettered(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
     """Returns the characters of a text along a curve, each a geometry that stands upright on it."""
-    from aidl_lang.building.along import KINDS, reading_way
-    from aidl_lang.common.lettering import ALIGNMENTS
-
     given = [v for v in spliced(a["curve"]) if isinstance(v, Geometry)]
     curves = [p for g in given for p in g.primitives(even_construction=True) if p.type != "point"]
     is_simple = all(c.type in KINDS for c in curves) and not any(g.recipe for g in given)
