@@ -303,7 +303,6 @@ class Explanation:
 
     @cached_property
     def _others(self) -> list[set[Span]]:
-        """The places at which the constraints of each other failure are stated."""
         others = [f for f in self.solution.failures if f is not self.failure]
         return [{c.span for i in f.conflict if (c := self.lowered.stated[i]) is not None} for f in others]
 
@@ -430,7 +429,6 @@ def _apart(party: _StatedMember, gap: float) -> tuple[str, ...]:
 
 
 def _name(parties: Sequence[_StatedMember]) -> str:
-    """Returns the name of the parties stated at one place: a loop states several."""
     first, label = f"`{shortened(parties[0].stated.text, _QUOTED)}`", parties[0].stated.label
     if len(parties) > 1:
         return f"{first} ({len(parties)} times)"

@@ -123,7 +123,6 @@ def assertion_note(assertion: Assertion, evaluate: Evaluator) -> Diagnostic | No
 
 
 def _lost_way(assertion: Assertion) -> Diagnostic:
-    """Returns the diagnostic for places along a curve that came out in another form."""
     message = f"`{assertion.span.one_line}` is not where it says: the curve was solved to another form"
     label = "laid out along the curve as it was written"
     hint = "write the points of the curve near to where the constraints bring them"
@@ -131,7 +130,6 @@ def _lost_way(assertion: Assertion) -> Diagnostic:
 
 
 def _too_long(assertion: Assertion, evaluate: Evaluator) -> Diagnostic:
-    """Returns the warning about a text that is longer than the curve that it is written along."""
     assert isinstance(assertion.condition, Condition)
     (fits,) = assertion.condition.comparisons()
     length, room = evaluate(fits.left), evaluate(fits.right)
@@ -162,7 +160,6 @@ def _is_fitted(false: Sequence[Comparison], outline: Geometry, evaluate: Evaluat
 
 
 def _other_box(assertion: Assertion, outline: Geometry, shown: Sequence[str]) -> Diagnostic:
-    """Returns the diagnostic for a constraint on the box of an outline that came out otherwise."""
     message = f"{told(assertion)} does not hold for `{outline.path}` as it is drawn"
     hint = f"it was solved with the boxes of what goes into `{outline.type}`, and less is left of them"
     hints = hint, constrain_sources(outline, assertion.holder)
