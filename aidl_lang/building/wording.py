@@ -140,9 +140,7 @@ def equated(it: Interpreter, pairs: Iterable[tuple[Num, Num]], node: ast.Node) -
     return tuple(c for made in conditions if isinstance(made, Condition) for c in made.comparisons())
 
 
-def _relates(
-    relation: str, a: float, b: float, is_angle: bool, tolerance: float, *, strict: bool = False
-) -> bool:
+def _relates(relation: str, a: float, b: float, is_angle: bool, tolerance: float, *, strict: bool) -> bool:
     """Tells whether a relation holds within a tolerance; if `strict`, `<` and `>` do not hold for equals."""
     difference = a - b
     if is_angle and relation in ("==", "!="):
