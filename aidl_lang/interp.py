@@ -69,10 +69,8 @@ def interpret(
     states_constants  conditions over constants, which are decided at once, become constraints all the same
     whole_boxes       a box compared with that of a descendant does not leave it out, for comparison
     """
-    it = Interpreter(program, overrides or {}, limits, EXECUTORS, evaluate, call)
-    it.turned = turned or {}
-    it.states_constants = states_constants
-    it.whole_boxes = whole_boxes
+    it = Interpreter(program, overrides or {}, limits, EXECUTORS, evaluate, call, turned=turned or {})
+    it.states_constants, it.whole_boxes = states_constants, whole_boxes
     it.frames_turn = any(map(_speaks_of_rotation, program.resolution.modules))
     it.watched = frozenset(node for violation in program.violations for node in violation.nodes)
     try:

@@ -327,7 +327,7 @@ class _Finish:
 
             with self.watch("reasons"):
                 self.given = gave_way(self.lowered, self.solution, self.settings.solving)
-            self.failures = explained(self.lowered, self.solution, self.tried())
+            self.failures = explained(self.tried())
 
     def draw(self) -> None:
         """Raises TooLongError."""
@@ -358,8 +358,7 @@ class _Finish:
             return []
         from aidl_lang.explaining.failures import elsewhere_notes
 
-        model, lowered = self.built.model, self.lowered
-        return list(elsewhere_notes(model, lowered, self.solution, self.other, trials))
+        return list(elsewhere_notes(self.built.model, self.other, trials))
 
     def _noted(self) -> _Noted:
         """Returns the diagnostics on the solution, and those on the drawing if the parts are in place."""

@@ -6,6 +6,7 @@ import math
 import sys
 from itertools import pairwise
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -48,12 +49,10 @@ class TestWithBuild123d:
     """Left out where build123d is not installed: it is no part of the development environment."""
 
     @pytest.fixture(autouse=True)
-    def _installed(self) -> None:
-        pytest.importorskip("build123d", reason="build123d is not installed")
+    def build123d(self) -> Any:
+        return pytest.importorskip("build123d", reason="build123d is not installed")
 
-    def test_a_solid_with_a_thickness_is_a_part_under_its_name(self) -> None:
-        import build123d
-
+    def test_a_solid_with_a_thickness_is_a_part_under_its_name(self, build123d: Any) -> None:
         part = aidl_lang.compile(PLATE).to_build123d()
         assert isinstance(part, build123d.Part)
         assert part.label == "plate"
@@ -63,9 +62,7 @@ class TestWithBuild123d:
         rounded = build123d.fillet(part.edges().group_by(build123d.Axis.Z)[-1], 0.5)
         assert part.volume - 60 < rounded.volume < part.volume
 
-    def test_one_without_is_a_sketch_and_takes_a_thickness(self) -> None:
-        import build123d
-
+    def test_one_without_is_a_sketch_and_takes_a_thickness(self, build123d: Any) -> None:
         model = aidl_lang.compile(PLATE.replace("@thickness(3mm)", ""))
         sketch = model.to_build123d()
         assert isinstance(sketch, build123d.Sketch)
@@ -111,10 +108,8 @@ class TestWithBuild123d:
         assert tuple(floor.joints["disc"].location.position) == pytest.approx((90, 0, 5))
 
     @pytest.mark.parametrize("name", ["motor_bracket", "finger_box", "gear_pair", "wrench"])
-    def test_examples_have_the_volume_that_is_measured(self, name: str, tmp_path: Path) -> None:
+    def test_examples_have_the_measured_volume(self, name: str, tmp_path: Path, build123d: Any) -> None:
         """Also those in a STEP file that build123d reads."""
-        import build123d
-
         (path,) = (each for each in EXAMPLES if each.stem == name)
         model = aidl_lang.compile(path)
         shape = model.to_build123d(thickness=3)

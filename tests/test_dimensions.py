@@ -2,23 +2,21 @@
 
 from __future__ import annotations
 
-import json
 import math
 
 import pytest
 
-from aidl_lang import pipeline
-from aidl_lang.common.source import SourceFile
 from aidl_lang.export.job import Options
 from aidl_lang.geometry.dimensions import dimensions
 from aidl_lang.geometry.solved import Dimension, Length
+from tests.compiled import compiled, json_of
 
 
 def found(text: str) -> list[tuple[Dimension, ...]]:
-    compiled = pipeline.compile(SourceFile("test.aidl", text))
-    assert compiled.model is not None, compiled.diagnostics
-    assert compiled.drawing is not None
-    return dimensions(compiled.model, compiled.drawing)
+    made = compiled(text)
+    assert made.model is not None, made.diagnostics
+    assert made.drawing is not None
+    return dimensions(made.model, made.drawing)
 
 
 def told(text: str) -> list[tuple[str, float, str]]:
@@ -57,7 +55,7 @@ def test_what_is_clipped_away_has_no_dimensions():
     }"""
     assert of(text, "size") == [("diameter", 16), ("vertical", 7), ("horizontal", 6)]
     for program, is_there in ((text, False), (text.replace("@clip(window)", ""), True)):
-        svg = pipeline.compile(SourceFile("test.aidl", program)).export(".svg", Options(dimension=True))
+        svg = compiled(program).export(".svg", Options(dimension=True))
         assert (b">43<" in svg) is is_there
 
 
@@ -144,14 +142,10 @@ def test_values_are_those_of_the_solved_model():
             constrain h.rim.center == body.bottom_left + (8, 6)
         }
     }"""
-    compiled = pipeline.compile(SourceFile("test.aidl", text))
-    solved = json.loads(compiled.export(".json"))["root"]["structures"][0]
+    solved = json_of(text)["root"]["structures"][0]
     corner = solved["geometry"]["body"]["parts"]["bottom_left"]["at"]
     center = solved["structures"][0]["geometry"]["rim"]["center"]
-    assert compiled.model is not None
-    assert compiled.drawing is not None
-    groups = dimensions(compiled.model, compiled.drawing)
-    lengths = [g[0] for g in groups if isinstance(g[0], Length) and g[0].origin == "constraint"]
+    lengths = [g[0] for g in found(text) if isinstance(g[0], Length) and g[0].origin == "constraint"]
     assert sorted(d.value for d in lengths) == pytest.approx([6, 8])
     for d in lengths:
         reach = (center[0] - corner[0]) * d.along[0] + (center[1] - corner[1]) * d.along[1]

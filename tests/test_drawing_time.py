@@ -68,30 +68,27 @@ def test_what_there_is_to_tell(monkeypatch: pytest.MonkeyPatch) -> None:
     assert found.export(".svg")
 
 
-def test_what_is_read_out_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+MANY = """solid s {
+    frame = rectangle(center: (0, 0), width: 90, height: 90)
+    for i in 0..8 { c[i] = circle(center: (9 * i, 0), radius: 3) }
+}"""
+
+
+@pytest.mark.parametrize(
+    ("text", "doing", "label"),
+    [
+        (PLATES, "_Reader.geometry", "it came as far as this"),
+        (MANY, "draw", "most of its curves are made here"),
+    ],
+)
+def test_the_place_is_named(text: str, doing: str, label: str, monkeypatch: pytest.MonkeyPatch) -> None:
     def late(*_: object) -> None:
         raise OutOfTime
 
-    monkeypatch.setattr("aidl_lang.geometry.picturing._Reader.geometry", late)
-    (told,) = pipeline.compile(SourceFile("plates.aidl", PLATES)).diagnostics
-    assert told.code == "E0805"
+    monkeypatch.setattr(f"aidl_lang.geometry.picturing.{doing}", late)
+    (told,) = pipeline.compile(SourceFile("part.aidl", text)).diagnostics
     assert told.span is not None
-    assert (told.span.line, told.label) == (3, "it came as far as this")
-
-
-def test_what_is_drawn_most_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
-    def late(*_: object) -> None:
-        raise OutOfTime
-
-    monkeypatch.setattr("aidl_lang.geometry.picturing.draw", late)
-    text = (
-        "solid s {\n    frame = rectangle(center: (0, 0), width: 90, height: 90)\n"
-        "    for i in 0..8 { c[i] = circle(center: (9 * i, 0), radius: 3) }\n}\n"
-    )
-    (told,) = pipeline.compile(SourceFile("s.aidl", text)).diagnostics
-    assert told.code == "E0805"
-    assert told.span is not None
-    assert (told.span.line, told.label) == (3, "most of its curves are made here")
+    assert (told.code, told.span.line, told.label) == ("E0805", 3, label)
 
 
 @pytest.mark.parametrize(
@@ -126,10 +123,7 @@ def test_writing(suffix: str) -> None:
 
 @pytest.mark.parametrize(
     ("verb", "doing"),
-    [
-        (["measure", "plates.aidl"], "measuring"),
-        (["diff", "plates.aidl", "--to", "wide=30"], "comparing"),
-    ],
+    [(["measure", "plates.aidl"], "measuring"), (["diff", "plates.aidl", "--to", "wide=30"], "comparing")],
 )
 @pytest.mark.usefixtures("hurried")
 def test_the_command_says_so(

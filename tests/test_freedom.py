@@ -25,7 +25,7 @@ from aidl_lang.solver import Relation, Solution, Status, solve
 from aidl_lang.solver.analysis import Freedom, analyse
 from aidl_lang.solver.valuation import linearise
 from tests.amount import tries
-from tests.compiled import LIGHTER
+from tests.compiled import LIGHTER, compiled
 from tests.solver.check import evaluate
 
 STEP = 1e-4
@@ -56,33 +56,27 @@ class Analysed:
         """How fast the observables change, by finite differences."""
         way, problem = self.rates(motion), self.lowered.problem
         step = STEP / np.abs(way).max()
-        ends = [
-            np.array(
-                [evaluate(problem, node, self.solution.values + s * way) for _, node in problem.observables]
-            )
-            for s in (step, -step)
-        ]
-        return (ends[0] - ends[1]) / (2 * step)
+        ahead, behind = (
+            np.array([evaluate(problem, node, at) for _, node in problem.observables])
+            for at in (self.solution.values + step * way, self.solution.values - step * way)
+        )
+        return (ahead - behind) / (2 * step)
+
+    def equations(self) -> list[int]:
+        """Every equation that holds."""
+        constraints = zip(self.lowered.problem.constraints, self.solution.satisfied, strict=True)
+        held = (c for c, holds in constraints if c.weight is None and holds)
+        return [row.expression for c in held for row in c.rows if row.relation is Relation.EQUAL]
 
     def residuals(self) -> list[tuple[float, float]]:
         """Of every equation that holds, a step along and a step against every motion."""
-        problem = self.lowered.problem
-        equations = [
-            row
-            for c, holds in zip(problem.constraints, self.solution.satisfied, strict=True)
-            if c.weight is None and holds
-            for row in c.rows
-            if row.relation is Relation.EQUAL
-        ]
+        problem, at = self.lowered.problem, self.solution.values
         ways = [self.rates(motion) for motion in self.ways]
-        found = []
-        for way in [STEP * way / np.abs(way).max() for way in ways]:
-            for row in equations:
-                ahead, behind = (
-                    evaluate(problem, row.expression, self.solution.values + sign * way) for sign in (1, -1)
-                )
-                found.append((ahead, behind))
-        return found
+        steps = [STEP * way / np.abs(way).max() for way in ways]
+        pairs = [(node, step) for step in steps for node in self.equations()]
+        return [
+            (evaluate(problem, node, at + step), evaluate(problem, node, at - step)) for node, step in pairs
+        ]
 
     def misses(self, motion: Motion, amount: float) -> float:
         """How far the equations are from holding where the things of a motion have gone on as its words say,
@@ -90,13 +84,7 @@ class Analysed:
         """
         problem, scene = self.lowered.problem, self.scene
         seen = np.flatnonzero(scene.anchor == 0)
-        equal = [
-            row.expression
-            for c, holds in zip(problem.constraints, self.solution.satisfied, strict=True)
-            if c.weight is None and holds
-            for row in c.rows
-            if row.relation is Relation.EQUAL
-        ]
+        equal = self.equations()
         roots = np.array([*equal, *(problem.observables[o][1] for o in seen)], dtype=np.int64)
         wanted = np.concatenate((np.zeros(len(equal)), self._gone(motion, amount)[seen]))
         kept = np.array(problem.kept, dtype=np.bool_)
@@ -278,14 +266,16 @@ def test_the_order_of_constraints_does_not_change_what_is_counted(text: str, cha
 
 
 def model(text: str) -> SolvedModel:
-    compiled = pipeline.compile(SourceFile("test.aidl", text))
-    assert compiled.model is not None
-    return compiled.model
+    found = compiled(text).model
+    assert found is not None
+    return found
+
+
+CIRCLES = "\n".join(f"c{'abcdefgh'[i]} = circle(center: ({9 * i}, 0), radius: 1)" for i in range(8))
 
 
 def test_lines_that_say_nothing_new_are_counted() -> None:
-    circles = "\n".join(f"c{'abcdefgh'[i]} = circle(center: ({9 * i}, 0), radius: 1)" for i in range(8))
-    found = model(f"drawing d {{ base = line(fixed((0, 0)), fixed((9, 0))) {circles} }}")
+    found = model(f"drawing d {{ base = line(fixed((0, 0)), fixed((9, 0))) {CIRCLES} }}")
     assert len(report(found)) == 8
     assert report(found, 8) == report(found)
     assert report(found, 4) == [*report(found)[:3], "… and 5 more like these"]
@@ -293,11 +283,12 @@ def test_lines_that_say_nothing_new_are_counted() -> None:
 
 
 def test_a_line_that_differs_in_kind_is_told_beyond_the_limit() -> None:
-    circles = "\n".join(f"c{'abcdefgh'[i]} = circle(center: ({9 * i}, 0), radius: 1)" for i in range(8))
-    told = report(
-        model(f"drawing d {{ {circles} pin = circle(center: fixed((0, 9)), radius: guess(3)) }}"), 4
-    )
-    assert told[1:] == ["`cb` can slide along x and y", "`pin.radius` can change", "… and 6 more like these"]
+    found = model(f"drawing d {{ {CIRCLES} pin = circle(center: fixed((0, 9)), radius: guess(3)) }}")
+    assert report(found, 4)[1:] == [
+        "`cb` can slide along x and y",
+        "`pin.radius` can change",
+        "… and 6 more like these",
+    ]
 
 
 def test_what_the_whole_drawing_does_is_not_told() -> None:

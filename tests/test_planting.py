@@ -9,29 +9,7 @@ import pytest
 
 from aidl_lang import pipeline
 from aidl_lang.common.diagnostics import Diagnostic, apply_fixes, has_errors
-from aidl_lang.common.records import record
 from aidl_lang.common.source import SourceFile
-
-
-@record()
-class Planted:
-    """A program and the constraints of each of its conflicts."""
-
-    text: str
-    conflicts: tuple[frozenset[str], ...]
-
-
-@record()
-class Verdict:
-    """
-    found    each planted conflict is told, with its constraints and no other
-    fits     each message has a fix that resolves its conflict and no other
-    solved   all fixes together leave no error
-    """
-
-    found: bool
-    fits: bool
-    solved: bool
 
 
 def _sizes(random: Random, r: str, c: str) -> list[str]:
@@ -76,8 +54,10 @@ def _insides(random: Random, r: str, c: str) -> list[str]:
 _KINDS: list[Callable[[Random, str, str], list[str]]] = [_sizes, _bounds, _sums, _ways, _insides]
 
 
-def planted(seed: int, count: int) -> Planted:
-    """Returns a drawing in one piece with `count` conflicts: a chain of plates, each with a circle."""
+def planted(seed: int, count: int) -> tuple[str, list[frozenset[str]]]:
+    """Returns a drawing in one piece with `count` conflicts, a chain of plates, each with a circle, and the
+    constraints of each conflict.
+    """
     random = Random(seed)
     members = count + random.randint(1, 3)
     bad = sorted(random.sample(range(members), count))
@@ -102,19 +82,21 @@ def planted(seed: int, count: int) -> Planted:
             stated += [f"{r}.width == {random.randint(20, 30)}", f"{c}.center == {r}.center"]
     random.shuffle(stated)
     lines = "\n".join([*(f"  {s}" for s in shapes), "  constrain {", *(f"    {s}" for s in stated), "  }"])
-    return Planted(f"drawing chain {{\n{lines}\n}}\n", tuple(conflicts))
+    return f"drawing chain {{\n{lines}\n}}\n", conflicts
 
 
-def judged(drawing: Planted) -> Verdict:
-    """Returns whether the conflicts of a drawing are told, and whether their fixes hold what they promise."""
-    source = SourceFile("planted.aidl", drawing.text)
+def judged(text: str, conflicts: list[frozenset[str]]) -> tuple[bool, bool, bool]:
+    """Returns whether each planted conflict is told, with its constraints and no other; whether each message
+    has a fix that resolves its conflict and no other; and whether all fixes together leave no error.
+    """
+    source = SourceFile("planted.aidl", text)
     compiled = pipeline.compile(source)
     told = [d for d in compiled.diagnostics if d.code == "E0601"]
     sets = _sets(compiled)
-    return Verdict(
-        found=sorted(sets, key=sorted) == sorted(drawing.conflicts, key=sorted),
-        fits=len(told) == len(sets) > 0 and all(_fits(source, d, sets) for d in told),
-        solved=not has_errors(_after(source, told).diagnostics),
+    return (
+        sorted(sets, key=sorted) == sorted(conflicts, key=sorted),
+        len(told) == len(sets) > 0 and all(_fits(source, d, sets) for d in told),
+        not has_errors(_after(source, told).diagnostics),
     )
 
 
@@ -133,13 +115,12 @@ def _fits(source: SourceFile, told: Diagnostic, before: list[frozenset[str]]) ->
 
 @pytest.mark.parametrize("count", [1, 2, *(pytest.param(n, marks=pytest.mark.slow) for n in (3, 5))])
 def test_all_that_is_wrong_is_told_at_once_and_mended(count: int) -> None:
-    verdict = judged(planted(1000 * count, count))
-    assert (verdict.found, verdict.fits, verdict.solved) == (True, True, True)
+    assert judged(*planted(1000 * count, count)) == (True, True, True)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("count", range(1, 6))
 def test_nearly_all_that_is_planted_is_told_and_mended(count: int) -> None:
-    verdicts = [judged(planted(1000 * count + n, count)) for n in range(50)]
-    assert sum(verdict.found for verdict in verdicts) >= 49
-    assert sum(verdict.solved for verdict in verdicts) >= 45
+    found, _, solved = zip(*(judged(*planted(1000 * count + n, count)) for n in range(50)), strict=True)
+    assert sum(found) >= 49
+    assert sum(solved) >= 45

@@ -42,35 +42,27 @@ def halves(width: int = 40, height: int = 26) -> np.ndarray:
     return pixels
 
 
-@pytest.mark.parametrize(
-    ("environment", "expected"),
-    [
-        ({"TERM": "xterm-kitty"}, "kitty"),
-        ({"TERM": "xterm-ghostty"}, "kitty"),
-        ({"TERM": "xterm-256color", "KITTY_WINDOW_ID": "1"}, "kitty"),
-        ({"TERM": "xterm-256color", "TERM_PROGRAM": "iTerm.app"}, "iterm"),
-        ({"TERM": "xterm-256color", "TERM_PROGRAM": "WezTerm"}, "iterm"),
-        ({"TERM": "xterm-256color", "LC_TERMINAL": "iTerm2"}, "iterm"),
-        ({"TERM": "foot"}, "sixel"),
-        ({"TERM": "foot-extra"}, "sixel"),
-        ({"TERM": "mlterm"}, "sixel"),
-        ({"TERM": "xterm-sixel"}, "sixel"),
-        ({"TERM": "xterm-256color"}, "blocks"),
-        ({"TERM": "xterm-256color", "TERM_PROGRAM": "vscode"}, "blocks"),
-        ({"TERM": "xterm-256color", "TERM_PROGRAM": "Apple_Terminal"}, "blocks"),
-        # What is inherited from the terminal around does not count in a multiplexer, nor in another terminal.
-        ({"TERM": "tmux-256color", "KITTY_WINDOW_ID": "1"}, "blocks"),
-        ({"TERM": "screen.xterm-256color", "LC_TERMINAL": "iTerm2"}, "blocks"),
-        ({"TERM": "xterm-kitty", "TMUX": "/tmp/t,1,0"}, "blocks"),
-        ({"TERM": "foot", "STY": "1.pts"}, "blocks"),
-        ({"TERM": "xterm-256color", "KITTY_WINDOW_ID": "1", "VTE_VERSION": "7000"}, "blocks"),
-        ({"TERM": "xterm-256color", "KITTY_WINDOW_ID": "1", "TERM_PROGRAM": "vscode"}, "blocks"),
-        ({"TERM": "alacritty", "KITTY_WINDOW_ID": "1"}, "blocks"),
-        ({}, "blocks"),
-    ],
-)
-def test_the_protocol_follows_from_the_environment(environment: dict[str, str], expected: str):
-    assert protocol(environment, "utf-8", is_terminal=True, has_colour=True) == expected
+ENVIRONMENTS = """
+kitty: TERM=xterm-kitty | TERM=xterm-ghostty | TERM=xterm-256color KITTY_WINDOW_ID=1
+iterm: TERM=xterm-256color TERM_PROGRAM=iTerm.app | TERM=xterm-256color TERM_PROGRAM=WezTerm
+iterm: TERM=xterm-256color LC_TERMINAL=iTerm2
+sixel: TERM=foot | TERM=foot-extra | TERM=mlterm | TERM=xterm-sixel
+blocks: TERM=xterm-256color | TERM=xterm-256color TERM_PROGRAM=vscode
+blocks: TERM=xterm-256color TERM_PROGRAM=Apple_Terminal |
+blocks: TERM=tmux-256color KITTY_WINDOW_ID=1 | TERM=screen.xterm-256color LC_TERMINAL=iTerm2
+blocks: TERM=xterm-kitty TMUX=/tmp/t,1,0 | TERM=foot STY=1.pts
+blocks: TERM=xterm-256color KITTY_WINDOW_ID=1 VTE_VERSION=7000 | TERM=alacritty KITTY_WINDOW_ID=1
+blocks: TERM=xterm-256color KITTY_WINDOW_ID=1 TERM_PROGRAM=vscode
+"""
+"""What is inherited from the terminal around does not count in a multiplexer, nor in another terminal."""
+
+
+@pytest.mark.parametrize("line", ENVIRONMENTS.strip().splitlines())
+def test_the_protocol_follows_from_the_environment(line: str):
+    expected, _, environments = line.partition(": ")
+    for environment in environments.split("|"):
+        variables = dict(each.split("=") for each in environment.split())
+        assert protocol(variables, "utf-8", is_terminal=True, has_colour=True) == expected
 
 
 def test_without_colour_or_letters_less_is_shown():

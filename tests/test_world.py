@@ -6,14 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from aidl_lang.common.world import (
-    DiskWorld,
-    FileError,
-    MemoryWorld,
-    ReadFailure,
-    Reads,
-    World,
-)
+from aidl_lang.common.world import DiskWorld, FileError, MemoryWorld, ReadFailure, Reads, World
 
 
 @pytest.fixture(params=["disk", "memory"])
@@ -26,6 +19,13 @@ def world(request: pytest.FixtureRequest, tmp_path: Path) -> World:
         (tmp_path / "root" / path).write_text(text)
     (tmp_path / "secret").write_text("secret")
     return DiskWorld(tmp_path / "root")
+
+
+def refused(world: World, path: str) -> ReadFailure:
+    with pytest.raises(FileError) as caught:
+        world.read(path)
+    assert caught.value.path == path
+    return caught.value.reason
 
 
 @pytest.mark.parametrize(
@@ -41,10 +41,7 @@ def world(request: pytest.FixtureRequest, tmp_path: Path) -> World:
     ],
 )
 def test_what_cannot_be_read(world: World, path: str, reason: ReadFailure) -> None:
-    with pytest.raises(FileError) as caught:
-        world.read(path)
-    assert caught.value.reason is reason
-    assert caught.value.path == path
+    assert refused(world, path) is reason
 
 
 def test_links_lead_nowhere_else(tmp_path: Path) -> None:
@@ -56,12 +53,9 @@ def test_links_lead_nowhere_else(tmp_path: Path) -> None:
     (root / "loop").symlink_to(root / "loop")
     world = DiskWorld(root)
     for path in ("link", "folder/secret"):
-        with pytest.raises(FileError) as caught:
-            world.read(path)
-        assert caught.value.reason is ReadFailure.OUTSIDE
+        assert refused(world, path) is ReadFailure.OUTSIDE
     for path in ("loop", "a\0b"):
-        with pytest.raises(FileError):
-            world.read(path)
+        assert refused(world, path)
 
 
 def test_a_link_leads_to_no_other_kind_of_file(tmp_path: Path) -> None:
@@ -70,9 +64,7 @@ def test_a_link_leads_to_no_other_kind_of_file(tmp_path: Path) -> None:
     (tmp_path / "link.aidl").symlink_to(tmp_path / ".env")
     (tmp_path / "other.aidl").symlink_to(tmp_path / "bolt.aidl")
     assert DiskWorld(tmp_path).read("other.aidl") == "bolt"
-    with pytest.raises(FileError) as caught:
-        DiskWorld(tmp_path).read("link.aidl")
-    assert caught.value.reason is ReadFailure.ANOTHER_KIND
+    assert refused(DiskWorld(tmp_path), "link.aidl") is ReadFailure.ANOTHER_KIND
 
 
 def test_a_link_that_comes_between_look_and_read_is_not_followed(tmp_path: Path) -> None:
@@ -94,6 +86,4 @@ def test_a_link_that_comes_between_look_and_read_is_not_followed(tmp_path: Path)
 
 def test_only_text_is_read(tmp_path: Path) -> None:
     (tmp_path / "bytes").write_bytes(b"\xff\xfe")
-    with pytest.raises(FileError) as caught:
-        DiskWorld(tmp_path).read("bytes")
-    assert caught.value.reason is ReadFailure.NOT_TEXT
+    assert refused(DiskWorld(tmp_path), "bytes") is ReadFailure.NOT_TEXT

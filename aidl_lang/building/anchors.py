@@ -117,13 +117,12 @@ def _choose(ties: Iterable[_Tie], standing: _Standing) -> None:
     """
     waiting = sorted(ties, key=lambda tie: tie.key)
     while waiting:
-        ready = [t for t in waiting if t.is_tied or _anchor(t, standing) is not None]
-        for tie in ready or waiting[:1]:
+        begun = [t for t in waiting if t.is_tied or _anchor(t, standing) is not None] or waiting[:1]
+        for tie in begun:
             anchor = None if tie.is_tied else _anchor(tie, standing) or _dearest(tie, standing)
             standing.placed |= tie.hold(anchor)
             standing.held |= anchor.near if anchor is not None else frozenset()
-        done = set(map(id, ready or waiting[:1]))
-        waiting = [t for t in waiting if id(t) not in done]
+        waiting = [t for t in waiting if t not in begun]
 
 
 def _anchor(tie: _Tie, standing: _Standing) -> _Party | None:

@@ -245,7 +245,7 @@ def read_attributes(
                 CLIP, attribute, body
             )  # until all geometry is there; of two the later counts
             s.attributes[CLIP] = tuple(TextVal(a.value.span.one_line) for a in attribute.arguments)
-        elif _fits(it, name, values, attribute) and _shows(it, name, values, attribute, s):
+        elif _fits(it, name, values, attribute) and _shows(it, name, attribute, s):
             s.attributes[name] = tuple(values)
 
 
@@ -256,7 +256,7 @@ def read_own_attributes(it: Interpreter, node: ast.Assign, value: Value, env: En
         is_own = here is env.holder and name in OWN_LOOKS.get(here.kind, ())
         if not things or not (name == "note" or is_own):
             _misplaced(it, node, attribute, value, env.holder)
-        elif _fits(it, name, values, attribute) and _shows(it, name, values, attribute, here):
+        elif _fits(it, name, values, attribute) and _shows(it, name, attribute, here):
             for thing in things:
                 thing.attributes = thing.attributes | {name: tuple(values)}
 
@@ -333,7 +333,7 @@ def _fits(it: Interpreter, name: str, values: list[Value], attribute: ast.Attrib
     return not wanted
 
 
-def _shows(it: Interpreter, name: str, values: list[Value], attribute: ast.Attribute, of: Structure) -> bool:
+def _shows(it: Interpreter, name: str, attribute: ast.Attribute, of: Structure) -> bool:
     """Tells whether a look is one of such a structure; a drawing is nothing but its strokes."""
     written, is_flat, wrong, hint = attribute.span.one_line, of.kind in ("drawing", "hole"), "", ""
     if (name in ("edges", "shadow") and is_flat) or (name == "halo" and of.kind == "hole"):
@@ -453,9 +453,7 @@ _WANTED: Mapping[str, Callable[[list[Value]], str]] = {
         lambda n: n == int(n) and 1 <= n <= MOST,
         f"a whole number of pieces from 1 to {MOST}, as in `@quantity(4)`",
     ),
-    "layer": _text("layer"),
-    "material": _text("material"),
-    **{name: _text(name) for name in ("note", "title", "author", "number", "revision")},
+    **{name: _text(name) for name in ("layer", "material", "note", "title", "author", "number", "revision")},
     **{name: _text(name) for name in ("thread", "tolerance", "finish")},
     "detached": _yes_or_no,
     "rigid": _yes_or_no,

@@ -41,7 +41,7 @@ class Box:
 
     def side(self, name: str) -> Expression:
         """Returns left, right, top or bottom; spelled out at once if no structure is in the box."""
-        side = _Side(self, name)
+        side = Side(self, name)
         if any(isinstance(source, Structure) for source in self.sources):
             return ex.lazy(side)
         return extent(side, frozenset())
@@ -71,7 +71,7 @@ class Box:
 
 
 @record(frozen=False, eq=False)
-class _Side:
+class Side:
     """A side of a box that is not yet spelled out."""
 
     box: Box
@@ -123,7 +123,7 @@ def boxes_in(*roots: Expression) -> tuple[Mapping[Structure, frozenset[str]], fr
     if not any(root.is_open for root in roots):
         return {}, None
     leaves = [node for node in ex.nodes(roots) if not node.args]
-    sides = [node.payload for node in leaves if isinstance(node.payload, _Side)]
+    sides = [node.payload for node in leaves if isinstance(node.payload, Side)]
     found: dict[Structure, frozenset[str]] = {}
     for side in sides:
         for source in side.box.sources:
@@ -146,27 +146,40 @@ def spelled_out(*roots: Expression, equal: bool = False, whole: bool = False) ->
     if not any(root.is_open for root in roots):
         return roots
     order = list(ex.nodes(roots, only_open=True))
-    sides = [n.payload for n in order if isinstance(n.payload, _Side)]
+    sides = [n.payload for n in order if isinstance(n.payload, Side)]
     if not sides:
         return roots
-    flush = equal and len({root.payload.name for root in roots if isinstance(root.payload, _Side)}) == 1
-    flush = flush and all(isinstance(root.payload, _Side) for root in roots)
+    flush = equal and len({root.payload.name for root in roots if isinstance(root.payload, Side)}) == 1
+    flush = flush and all(isinstance(root.payload, Side) for root in roots)
     boxed = (s for side in sides for s in side.box.sources if isinstance(s, Structure))
     used = set() if whole else set(boxed)
+
+    def known(side: object) -> Expression | None:
+        if not isinstance(side, Side):
+            return None
+        tops = [s for s in side.box.sources if isinstance(s, Structure)]
+        ignored = (
+            u for u in used for t in tops if u is not t and u.is_within(t) and (t.geometry or not flush)
+        )
+        return extent(side, frozenset(ignored))
+
+    return _replaced(order, known, roots)
+
+
+def _replaced(
+    order: Iterable[Expression], known: Callable[[object], Expression | None], roots: tuple[Expression, ...]
+) -> tuple[Expression, ...]:
+    """Returns expressions with the nodes of whose payload something is known replaced by that."""
     replaced: dict[Expression, Expression] = {}
     for node in order:
-        if isinstance(node.payload, _Side):
-            tops = [s for s in node.payload.box.sources if isinstance(s, Structure)]
-            ignored = frozenset(
-                u for u in used for t in tops if u is not t and u.is_within(t) and (t.geometry or not flush)
-            )
-            replaced[node] = extent(node.payload, ignored)
+        if node.payload is not None and (found := known(node.payload)) is not None:
+            replaced[node] = found
         elif any(a in replaced for a in node.args):
             replaced[node] = ex.apply(node.op, *[replaced.get(a, a) for a in node.args])
     return tuple(replaced.get(root, root) for root in roots)
 
 
-def extent(side: _Side, ignored: frozenset[Structure]) -> Expression:
+def extent(side: Side, ignored: frozenset[Structure]) -> Expression:
     """Returns a side as the extreme of everything in the box; 0 if there is nothing in it."""
     here, name = side.box.here, side.name
     only = side.box.sources[0] if len(side.box.sources) == 1 else None
@@ -295,13 +308,11 @@ def with_measured(
     known: Callable[[Measurement], Expression | None], *roots: Expression
 ) -> tuple[Expression, ...]:
     """Returns expressions with what the drawing would be measured for replaced by what is known of it."""
-    replaced: dict[Expression, Expression] = {}
-    for node in list(ex.nodes(roots, only_open=True)):
-        if isinstance(node.payload, Measurement):
-            replaced[node] = known(node.payload) or node
-        elif any(a in replaced for a in node.args):
-            replaced[node] = ex.apply(node.op, *[replaced.get(a, a) for a in node.args])
-    return tuple(replaced.get(root, root) for root in roots)
+
+    def found(payload: object) -> Expression | None:
+        return known(payload) if isinstance(payload, Measurement) else None
+
+    return _replaced(list(ex.nodes(roots, only_open=True)), found, roots)
 
 
 def _made_of(side: Measurement) -> tuple[Recipe, Structure]:

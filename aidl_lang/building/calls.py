@@ -1,29 +1,19 @@
-"""Calls: the parameters of the chosen definition are bound, and its body is run."""
+"""Calls: a definition is chosen among the overloads of a name, its parameters are bound, its body is run."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from functools import lru_cache
 
 from aidl_lang.building.boxes import box_of
 from aidl_lang.building.coerce import all_within, as_point, edge_coordinate, items_of, owners_of
 from aidl_lang.building.construct import CONSTRUCTORS, construct, positions, refuses_measure, size, turn
 from aidl_lang.building.curves import ask_to_turn, is_of_directions
-from aidl_lang.building.evaluate import evaluate, truth, turns
+from aidl_lang.building.evaluate import evaluate, run_block, stated, truth
 from aidl_lang.building.functions import FUNCTIONS
 from aidl_lang.building.model import Condition, Geometry, all_parts, reach_of
 from aidl_lang.building.outlines import remember, usable
-from aidl_lang.building.overloads import CallSite, arranged, candidates_of, no_overload, placing, site_of
-from aidl_lang.building.state import (
-    Ahead,
-    Arguments,
-    Candidate,
-    Env,
-    Interpreter,
-    LetBinding,
-    ParamBinding,
-    Reach,
-    Scope,
-)
+from aidl_lang.building.state import Arguments, Candidate, Env, Interpreter, Reach, Scope
 from aidl_lang.building.values import (
     NOTHING,
     Array,
@@ -35,29 +25,53 @@ from aidl_lang.building.values import (
     PointVal,
     RangeVal,
     RecordVal,
+    TextVal,
     Value,
     certain,
+    kind_of,
+    length,
     members,
     numbers_of,
     spliced,
+    type_of,
 )
-from aidl_lang.building.wording import all_of
-from aidl_lang.checking.builtins import COPYING
-from aidl_lang.checking.library import signature
-from aidl_lang.checking.resolve import is_definition
-from aidl_lang.checking.rules import blocks
+from aidl_lang.building.wording import all_of, replace_placed, value_unknowns
+from aidl_lang.checking.binding import select
+from aidl_lang.checking.builtins import (
+    CONNECTING,
+    COPYING,
+    CUTS,
+    DERIVING,
+    FOLLOWED,
+    OUTLINES,
+    PATTERNS,
+    is_word,
+)
+from aidl_lang.checking.imports import meant
+from aidl_lang.checking.symbols import Symbol, SymbolKind
 from aidl_lang.checking.types import (
     ANY,
+    PEERS,
+    PUBLIC,
+    ArgumentSource,
     Binding,
     BoxType,
+    GeometryType,
     ListType,
+    Mismatch,
     NumberType,
     PointType,
     Signature,
+    StructureType,
     TruthType,
     Type,
+    given_to,
+    with_article,
 )
+from aidl_lang.common.names import fold
 from aidl_lang.syntax import ast
+
+# --- Calls: the parameters of the chosen definition are bound, and its body is run.
 
 
 def call(it: Interpreter, node: ast.Call, env: Env) -> Value:
@@ -145,7 +159,6 @@ def bound(
 
 
 def _as_kind(it: Interpreter, value: Value, kind: Type, node: ast.Node, env: Env) -> Value | None:
-    """Returns an argument as the kind of value that its parameter asks for; other kinds stay as they are."""
     match kind:
         case NumberType(dimension=dimension) if isinstance(value, Num):
             same = value.dimension == dimension
@@ -188,8 +201,13 @@ def invoke(
         case ast.ConstraintDefinition():
             inner = _inside(it, candidate, arguments, definition.parameters, env)
             condition = run_items(it, definition.body, inner)
-            if condition is True and binding.gathered and len(values) == len(binding.arguments) == 1:
-                _says_nothing(it, node, values[0])
+            is_of_one = binding.gathered and len(values) == len(binding.arguments) == 1
+            if (
+                condition is True and is_of_one and members(values[0]) is None
+            ):  # the length of a list may vary
+                message = f"`{node.span.one_line}` says nothing: it relates two things or more"
+                hint = f"name what it is related to, as in `{node.callee.text}(a, b)`"
+                it.report("E0343", message, node, hints=[hint])
             condition = placing(condition, binding, values, env)
             is_stated = env.reach is Reach.SUBTREE and it.place(node) is node.span  # not by the library
             if is_of_directions(candidate.signature) and is_stated:
@@ -204,7 +222,6 @@ def invoke(
 def _inside(
     it: Interpreter, candidate: Candidate, arguments: Arguments, parameters: Sequence[ast.Parameter], env: Env
 ) -> Env:
-    """Returns the environment of the body of a definition: its parameters, with what they get."""
     inner = env.within(Scope(candidate.scope))
     for parameter, (name, kind, _) in zip(parameters, candidate.signature.parameters, strict=True):
         value = arguments.get(name)
@@ -223,40 +240,18 @@ def default_of(it: Interpreter, parameter: ast.Parameter, kind: Type, env: Env) 
 
 def run_items(it: Interpreter, block: ast.Block, env: Env) -> Value:
     """Returns the items of a constraint's body as one condition."""
-    scope = env.scope
-    named = (s for s in block.statements if isinstance(s, ast.Let | ast.Assign))
-    scope.values |= {s.name.text: LetBinding(s.value, scope) for s in named}
     found: list[Value] = []
-    for statement in block.statements:
-        match statement:
+    for node, place in stated(it, block.statements, env):
+        match node:
             case ast.ExpressionStatement(value=value):
-                found.append(evaluate(it, value, env))
+                found.append(evaluate(it, value, place))
             case ast.Equation():
-                if not any(d.code == "N0501" and d.span == statement.span for d in it.diagnostics):
-                    it.report("N0501", "`=` inside `constraint` is read as `==`", statement)
-                found.append(evaluate(it, statement.meant, env))
-            case ast.Constrain(items=items):
-                found.append(run_items(it, items, env))
-            case ast.For(body=body):
-                found += [run_items(it, body, turn) for turn in turns(it, statement, env) or ()]
-            case ast.If(test=test, then=then, otherwise=otherwise):
-                chosen = then if truth(it, evaluate(it, test, env), test) else otherwise
-                if chosen is not None:
-                    found.append(run_items(it, chosen, env))
-            case ast.Let() | ast.Assign():
-                pass
+                it.report("N0501", "`=` inside `constraint` is read as `==`", node, once=True)
+                found.append(evaluate(it, node.meant, place))
             case _:
                 message = "a constraint's body holds conditions, `let`, `for` and `if` only"
-                it.report("E0312", message, statement)
+                it.report("E0312", message, node)
     return all_of(found)
-
-
-def _says_nothing(it: Interpreter, node: ast.Call, only: Value) -> None:
-    """Reports a relation of several things that gets one; not of a list of one, since its length may vary."""
-    if members(only) is None:
-        message = f"`{node.span.one_line}` says nothing: it relates two things or more"
-        hint = f"name what it is related to, as in `{node.callee.text}(a, b)`"
-        it.report("E0343", message, node, hints=[hint])
 
 
 def _shape(it: Interpreter, candidate: Candidate, arguments: Arguments, node: ast.Call, env: Env) -> Value:
@@ -357,62 +352,218 @@ def _bind_inside(
             return value
 
 
-# --- Bodies: the declarations that hold in the whole of one, and its statements one by one.
+# --- Arguments arranged for a binding: a pair taken apart, two coordinates made one point.
 
 
-def run_block(it: Interpreter, statements: Sequence[ast.Statement], env: Env) -> None:
-    """Runs the statements of a body. Callables and constants are visible in the whole of it."""
-    hoist_callables(it, env.scope, statements)
-    hoist_values(env, statements)
-    ahead = Ahead(statements, env)
-    it.ahead.append(ahead)
-    try:
-        for ahead.next, statement in enumerate(statements, start=1):
-            _execute(it, statement, env)
-    finally:
-        it.ahead.pop()
+def arranged(
+    binding: Binding, values: Sequence[Value], nodes: Sequence[ast.Node]
+) -> tuple[Sequence[Value], Sequence[ast.Node]]:
+    """Returns the values that a binding refers to by index, and the text each comes from."""
+    if not binding.sources:
+        return values, nodes
+    return [_value(s, values) for s in binding.sources], [nodes[s.index] for s in binding.sources]
 
 
-def hoist_callables(it: Interpreter, scope: Scope, statements: Iterable[ast.Statement]) -> None:
-    for node in statements:
-        if isinstance(node, ast.Alias):
-            scope.aliases[node.name.text] = node.target.text
-        elif isinstance(node, ast.Callable) and is_definition(node):
-            if node not in it.signatures:
-                it.signatures[node] = signature(node)
-            scope.define(Candidate(it.signatures[node], scope))
+def _value(source: ArgumentSource, values: Sequence[Value]) -> Value:
+    value = values[source.index]
+    if source.other is not None:
+        x, y = value, values[source.other]
+        if isinstance(x, Num) and isinstance(y, Num):
+            return PointVal(length(x.expression, x.status), length(y.expression, y.status))
+        return NOTHING
+    match value:
+        case PointVal(x, y) if source.part is not None:
+            return (x, y)[source.part]
+        case ListVal(items) if source.part is not None:
+            return items[source.part]
+        case _:
+            return value
 
 
-def hoist_values(env: Env, statements: Iterable[ast.Statement]) -> None:
-    scope = env.scope
-    for node in statements:
-        match node:
-            case ast.Let():
-                scope.values.setdefault(node.name.text, LetBinding(node.value, scope))
-            case ast.Param():
-                scope.values.setdefault(node.name.text, ParamBinding(node, scope, env.here))
+# --- The roles of a call's arguments: those it places and those it holds.
+#
+# A relation that puts one thing where another is (`above(a, b)`, `centered_in(a, b)`) holds the other. One
+# over equals holds nobody by its place: the parameter type `peer` says so of one thing, and `peers` of a
+# list, in the library as in a program. A list that is given as one counts as equals, too:
+# `align_left(slits)`.
 
 
-def _execute(it: Interpreter, node: ast.Statement, env: Env) -> None:
-    """Carries out a statement; definitions were hoisted and do nothing here."""
-    if (run := it.executors.get(type(node))) is None:
+def placing(condition: Value, binding: Binding, values: Sequence[Value], env: Env) -> Value:
+    """Returns the condition of a call with the unknowns it places. The last positional argument is held on
+    the first try and those before it are placed; equals are parties of one rank. A definition that only calls
+    another leaves the choice to that one (`contains` holds its first), unless it gathered the arguments that
+    it passes on.
+    """
+    if not isinstance(condition, Condition):
+        return condition
+    definition = certain(binding.signature.node, ast.ConstraintDefinition)
+    if equals := _equals(definition, binding, values):
+        parties = tuple(frozenset(value_unknowns(value, env.here)) for value in equals)
+        every = frozenset().union(*parties)
+        return replace_placed(condition, every, () if _is_given_a_place(definition, binding) else parties)
+    positional = [values[i] for i in binding.positional]
+    if _delegates(definition) and not (binding.gathered and len(positional) > 1):
+        return condition
+    if len(positional) > 2 and isinstance(positional[-1], Num) and not isinstance(positional[-2], Num):
+        positional.pop()  # the value that a measure is set to
+    flat = [item for value in positional for item in spliced(value)] if binding.gathered else positional
+    placed = flat[:-1] if len(flat) > 1 else flat
+    unknowns = frozenset(u for value in placed for u in value_unknowns(value, env.here))
+    return replace_placed(condition, unknowns) if unknowns else condition
+
+
+def _equals(definition: ast.ConstraintDefinition, binding: Binding, values: Sequence[Value]) -> list[Value]:
+    """Returns the things of one rank in a call, in the order of its arguments; none if it holds one."""
+    given = binding.arguments
+    peers = (p for p in definition.parameters if p.type is not None and fold(p.type.text) in PEERS)
+    declared = [values[i] for parameter in peers for i in given.get(parameter.name.text, ())]
+    if not declared and binding.signature.gathers and len(binding.positional) == 1:
+        (only,) = given.get(binding.signature.parameters[0][0], (None,))
+        declared = [values[only]] if only is not None and members(values[only]) is not None else []
+    return [item for value in declared for item in spliced(value)]
+
+
+def _is_given_a_place(definition: ast.ConstraintDefinition, binding: Binding) -> bool:
+    """Tells whether another thing decides the place of a list, as in `spread(list, inside: box)`: then all
+    are placed and there is no anchor among them.
+    """
+    related = {name for name, kind, _ in binding.taken if isinstance(kind, _PLACES)}
+    word = definition.parameters[0].type
+    return word is not None and fold(word.text) == "peers" and bool(related)
+
+
+_PLACES = BoxType | PointType | GeometryType | StructureType
+
+
+def _delegates(definition: ast.ConstraintDefinition) -> bool:
+    only = definition.body.statements[0] if len(definition.body.statements) == 1 else None
+    return isinstance(only, ast.ExpressionStatement) and isinstance(only.value, ast.Call)
+
+
+# --- The choice of a definition for a call, among the overloads of its name.
+
+_DRAWING = PATTERNS.union(PUBLIC)
+
+
+class CallSite:
+    """A call in the text, with what follows from the overloads of its name.
+
+    nodes          its arguments
+    written        each of them with the text it is if it is a bare word
+    doubtful       the arguments, by index, that are such words and names in reach as well
+    instantiates   whether an overload is a template
+    makes_outline  whether the overloads are those of an outline made of others
+    derives        whether they derive for good: an outline of others, or a copy
+    connects       whether they follow points that may be those of other structures
+    draws          whether one of them makes geometry that the solver may move
+    """
+
+    def __init__(self, node: ast.Call, signatures: list[Signature], names: Mapping[ast.Node, Symbol]) -> None:
+        self.node = node
+        self.signatures = signatures
+        self.nodes = tuple(a.value for a in node.arguments)
+        words = [i for i, a in enumerate(node.arguments) if is_word(a, signatures)]
+        known = {i: names.get(self.nodes[i]) for i in words}
+        self.doubtful = [i for i, s in known.items() if s is not None and s.kind is not SymbolKind.WORD]
+        self.written = tuple(
+            (n, TextVal(n.span.text) if i in words and i not in self.doubtful else None)
+            for i, n in enumerate(self.nodes)
+        )
+        self.instantiates = any(s.kind is ast.Structure for s in signatures)
+        self.makes_outline = bool(signatures) and signatures[0].name in OUTLINES
+        self.derives = bool(signatures) and signatures[0].name in DERIVING
+        self.connects = bool(signatures) and all(s.standard and s.name in CONNECTING for s in signatures)
+        self.draws = any(s.kind is ast.ShapeDefinition or s.name in _DRAWING for s in signatures)
+        if signatures and (followed := FOLLOWED.get(signatures[0].name)) is not None:
+            self.derives = any(a.name is not None and fold(a.name.text) in followed for a in node.arguments)
+        self._meanings: dict[tuple[Type, ...], Binding | list[Mismatch]] = {}
+        self._last: tuple[tuple[Type, ...] | None, Binding | list[Mismatch]] = (None, [])
+
+    def meaning(self, values: Sequence[Value]) -> Binding | list[Mismatch]:
+        """Returns the overload that is meant. Types decide, so a choice holds whenever they come again."""
+        kinds = tuple(map(type_of, values))
+        before, found = self._last
+        if kinds == before:  # usually so, and types are slow to hash
+            return found
+        if (known := self._meanings.get(kinds)) is None:
+            if len(self._meanings) >= _MOST_MEANINGS:
+                self._meanings.clear()
+            known = self._meanings[kinds] = select(self.signatures, given_to(self.node, kinds))
+        self._last = kinds, known
+        return known
+
+    def reading(self, values: list[Value]) -> tuple[Binding | list[Mismatch], list[Value]]:
+        """Returns the overload that is meant, and the arguments; a name in reach is an option at worst."""
+        chosen = self.meaning(values)
+        if isinstance(chosen, list) and self.doubtful:
+            before = len(values) - len(self.nodes)
+            worded = list(values)
+            for index in self.doubtful:
+                worded[before + index] = TextVal(self.nodes[index].span.text)
+            if isinstance(other := self.meaning(worded), Binding):
+                return other, worded
+        return chosen, values
+
+
+def site_of(it: Interpreter, node: ast.Call, candidates: Sequence[Candidate]) -> CallSite:
+    """Returns the site of a call for overloads of its name; a body that runs again defines them anew."""
+    before, known = it.sites.get(node, (None, None))
+    if known is not None and before is candidates:
+        return known
+    signatures = [c.signature for c in candidates]
+    if known is None or known.signatures != signatures:
+        is_standard = node.span.source in it.library_sources and all(s.standard for s in signatures)
+        if is_standard:
+            known = _standard_site(node, tuple(signatures))
+        else:
+            known = CallSite(node, signatures, it.program.resolution.uses)
+    it.sites[node] = candidates, known
+    return known
+
+
+@lru_cache(maxsize=4096)
+def _standard_site(node: ast.Call, signatures: tuple[Signature, ...]) -> CallSite:
+    return CallSite(node, list(signatures), {})
+
+
+_MOST_MEANINGS = 100  # of one call; lists of every length are types of their own
+
+
+def candidates_of(it: Interpreter, node: ast.Call, scope: Scope, receiver: Value | None) -> list[Candidate]:
+    """Returns the callables that a call may mean at its place."""
+    if isinstance(receiver, Namespace):
+        inner = receiver.values.get("")
+        return inner.candidates(it.spelled(node.callee)) if isinstance(inner, Scope) else []
+    found = scope.candidates(it.spelled(node.callee))
+    if not found or found[0].signature.name not in CUTS:
+        return found
+    of_context = it.program.resolution.candidates.get(node)
+    signatures = [c.signature for c in found]
+    wanted = meant(signatures, of_context is not None and any(s.kind is ast.Structure for s in of_context))
+    return found if wanted is signatures else [c for c in found if c.signature in wanted]
+
+
+def no_overload(
+    it: Interpreter,
+    node: ast.Call,
+    misses: Sequence[Mismatch],
+    nodes: Sequence[ast.Node],
+    values: Sequence[Value],
+) -> None:
+    name = node.callee.text
+    if it.place(node) is not node.span:
+        # An error in the library on a pair of things is reported at the author's call, in the author's words.
+        things = [v for v in values if not isinstance(v, TextVal | bool)]
+        pairs = [[of for _, of, _ in m.signature.parameters] for m in misses]
+        known = dict.fromkeys(" and ".join(map(with_article, of[:2])) for of in pairs if ANY not in of)
+        hints = [f"it takes {', '.join(list(known)[:8])}"] if known else []
+        it.refuse(node, f"it does not go with {' and '.join(map(kind_of, things))}", hints)
         return
-    it.check_time(node)
-    try:
-        run(it, node, env)
-    except RecursionError:
-        it.too_deep(node)
-
-
-def declared_names(block: ast.Block, *, indexed: bool = False) -> Iterator[str]:
-    """Yields the names that a block gives to geometry and structures; if `indexed`, those with an index."""
-    for node in block.statements:
-        match node:
-            case ast.Assign() | ast.Structure(parameters=None):
-                if node.indices or not indexed:
-                    yield node.name.text
-            case ast.Var() if not indexed:
-                yield node.name.text
-            case ast.For() | ast.If():
-                for inner in blocks(node):
-                    yield from declared_names(inner, indexed=indexed)
+    closest = max(misses, key=lambda m: m.argument is not None)
+    at = nodes[closest.argument] if len(misses) == 1 and closest.argument is not None else node
+    if len(misses) == 1:
+        message, hints = f"`{name}` {closest.reason}", [f"it is called as `{closest.signature}`"]
+    else:
+        message = f"no `{name}` takes these arguments"
+        hints = [f"`{m.signature}`: {m.reason}" for m in misses]
+    it.report("E0311", message, at, hints=hints)

@@ -253,8 +253,7 @@ def entry(it: Interpreter, value: RecordVal, name: str, node: ast.Node) -> Value
     if (key := find(name, value.fields)) is None:
         known = first_few(ticked(value.fields), 12, "")
         hints = did_you_mean(nearest(name, value.fields)) or [f"it has {known}" if known else "it is empty"]
-        it.report("E0202", f"this record has no `{name}`", node, hints=hints)
-        return NOTHING
+        return it.report("E0202", f"this record has no `{name}`", node, hints=hints)
     return value.fields[key]
 
 
@@ -284,8 +283,7 @@ def _str(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
     if isinstance(value, Num) and constant(it, value, node, "a number that becomes a text") is None:
         return NOTHING
     if (text := as_text(value)) is None:
-        it.report("E0302", f"`str` writes numbers, texts and truth values, not {kind_of(value)}", node)
-        return NOTHING
+        return it.report("E0302", f"`str` writes numbers, texts and truth values, not {kind_of(value)}", node)
     return TextVal(text)
 
 
@@ -308,8 +306,7 @@ def _zip(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
     lengths = [len(items) for items in lists]
     if len(set(lengths)) > 1:
         told = " and ".join(str(n) for n in lengths)
-        it.report("E0304", f"`zip` pairs lists of one length, and these have {told} members", node)
-        return NOTHING
+        return it.report("E0304", f"`zip` pairs lists of one length, and these have {told} members", node)
     return ListVal(tuple(ListVal(pair) for pair in zip(*lists, strict=True)))
 
 

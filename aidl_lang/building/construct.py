@@ -1,4 +1,4 @@
-"""Geometry and the exactness of its numbers (language reference: numbers, parameters, exactness)."""
+"""Geometry, texts and drawings among it, and the exactness of its numbers (language reference: numbers)."""
 
 from __future__ import annotations
 
@@ -6,32 +6,40 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import cache
+from pathlib import PurePosixPath
 from typing import TYPE_CHECKING
 
 from aidl_lang.building import expression as ex
 from aidl_lang.building.boxes import SIDES
+from aidl_lang.building.coerce import constant
 from aidl_lang.building.curves import direction, distance, polar, xy
 from aidl_lang.building.expression import Expression, Place
 from aidl_lang.building.model import Constraint, Geometry, Holder, Measurement, is_size
 from aidl_lang.building.state import Arguments, Env, Interpreter, Stop
 from aidl_lang.building.values import (
     Exactness,
-    Nothing,
     Num,
     PointVal,
     TextVal,
     Value,
     certain,
+    kind_of,
     length,
+    number,
     point,
 )
-from aidl_lang.building.wording import all_of, compare_numbers
+from aidl_lang.building.wording import equated
 from aidl_lang.checking.builtins import SIGNATURES
 from aidl_lang.checking.rules import place_before
 from aidl_lang.checking.types import PRIMITIVES, NumberType, PointType
-from aidl_lang.checking.units import ANGLE, LENGTH, MaybeDimension
+from aidl_lang.checking.units import ANGLE, LENGTH, PLAIN, MaybeDimension
+from aidl_lang.common import lettering
 from aidl_lang.common.diagnostics import Edit, Fix
+from aidl_lang.common.font_files import FontError
+from aidl_lang.common.lettering import Font, Glyph
+from aidl_lang.common.prose import first_few
 from aidl_lang.common.source import Span
+from aidl_lang.common.world import FONTS, FileError, ReadFailure, relative_to
 from aidl_lang.syntax import ast
 
 if TYPE_CHECKING:
@@ -42,8 +50,6 @@ if TYPE_CHECKING:
 ROUND = 0.01
 """The part of the larger one by which the distances of start and end from the centre may differ without a
 warning."""
-
-_CODE = "W0503"
 
 _BY_CENTER = ("center", "start", "end")
 _BY_MIDDLE = ("start", "mid", "end")
@@ -59,8 +65,6 @@ def check_bare_points(it: Interpreter, node: ast.Call, arguments: Mapping[str, V
     start, end, across = _apart(a, b), _apart(a, c), _apart(b, c)
     if not differ(start, end) > ROUND:
         return
-    if any(d.code == _CODE and d.span == it.place(node) for d in it.diagnostics):
-        return  # reported in an earlier turn of a loop
     is_through = differ(start, across) <= differ(start, end)
     meant, other = (_BY_MIDDLE, _BY_CENTER) if is_through else (_BY_CENTER, _BY_MIDDLE)
     far = f"the start is {start:g} from the centre and the end {end:g}"
@@ -72,7 +76,7 @@ def check_bare_points(it: Interpreter, node: ast.Call, arguments: Mapping[str, V
         hint = f"or write `{node.callee.text}({said})` if that is meant"
         edits = tuple(Edit(place_before(p), f"{name}: ") for name, p in zip(meant, points, strict=True))
         fix = Fix(f"name them `{meant[0]}`, `{meant[1]}` and `{meant[2]}`", edits)
-    it.report(_CODE, message, node, hints=[hint], fix=fix)
+    it.report("W0503", message, node, hints=[hint], fix=fix, once=True)
 
 
 def _apart(a: PointVal, b: PointVal) -> float:
@@ -85,9 +89,142 @@ def differ(a: float, b: float) -> float:
 
 
 def _is_plain(node: ast.Call) -> bool:
-    """Tells whether the three points are the first arguments of the call, all without a name."""
     points = node.arguments[:3]
     return node.receiver is None and len(points) == 3 and all(p.name is None for p in points)
+
+
+# --- The font that a text names: one that ships with the package, or a file beside the program.
+#
+# Paths follow the rules of imports: relative to the file in which the text is written, and inside the
+# project.
+
+PLAIN_FONT, SINGLE_LINE = "DejaVu Sans", "single line"
+"""The names of the fonts that ship with the package."""
+
+
+class NoFontError(Exception):
+    """Raised for a font that there is not, with a message and hints."""
+
+
+def font_of(it: Interpreter, name: str, *, bold: bool) -> Font:
+    """Returns the font of this name, for the text that is being built. Raises NoFontError or FontError."""
+    if name == PLAIN_FONT:
+        return lettering.bold_font() if bold else lettering.plain_font()
+    if name == SINGLE_LINE:
+        if bold:
+            message = "letters of single lines cannot be bold: they are as wide as the tool"
+            raise NoFontError(message, "leave out `bold`, or the font")
+        return lettering.single_line_font()
+    if PurePosixPath(name).suffix.lower() not in FONTS:
+        raise NoFontError(
+            f'there is no font "{name}"',
+            'name a font file beside the program, as in `font: "Lobster.ttf"`',
+            "fonts of this machine are not looked through, as others have other ones",
+            f'`font: "{PLAIN_FONT}"` is what texts have unasked, `font: "{SINGLE_LINE}"` is for engraving',
+        )
+    if bold:
+        hint = "name the file of its bold face, and leave out `bold`"
+        raise NoFontError(f"`{name}` is one face, and cannot be made bold", hint)
+    if (world := it.program.resolution.world) is None:
+        raise NoFontError(f"`{name}` cannot be read: only this text is at hand")
+    try:
+        path = relative_to(name, _writer(it))
+        if path not in it.fonts:
+            it.fonts[path] = lettering.font_of(world.read_bytes(path))
+        return it.fonts[path]
+    except FileError as error:
+        hint = "paths are relative to the file that the text is written in"
+        if error.reason is ReadFailure.OUTSIDE:
+            hint = "copy it beside the program: only its own folder and those below it are read"
+        raise NoFontError(f"`{name}` cannot be read: {error.reason}", hint) from None
+
+
+def _writer(it: Interpreter) -> str:
+    authored = (node for node in reversed(it.call_sites) if node.span.source not in it.library_sources)
+    source = next(authored, it.program.main).span.source
+    if source is it.program.main.source:
+        return PurePosixPath(source.name.replace("\\", "/")).name
+    return source.name
+
+
+# --- Lettering in a program: `glyphs(…)` makes one geometry of a whole text, `ink(…)` measures it.
+#
+# A text is a single primitive: its place, height and angle are solved for, its curves follow when the
+# solution is read out. Dozens of letters then cost the solver no more than one circle.
+
+
+def typeset(it: Interpreter, a: Arguments) -> tuple[Glyph, ...]:
+    """Returns the characters of a text in units of its height; empty after an error, reported here."""
+    node = it.call_sites[-1]
+    at = it.place(node)
+    text, align, name = (certain(a[each], TextVal).value for each in ("text", "align", "font"))
+    apart = constant(it, certain(a["line_spacing"], Num), node, "the spacing of lines")
+    if align not in lettering.ALIGNMENTS:
+        allowed = ", ".join(f'`"{word}"`' for word in lettering.ALIGNMENTS)
+        message = f'"{align}" is not one of the words that are meant here'
+        it.report("E0516", message, at, hints=[f"it is one of {allowed}"], once=True)
+        return ()
+    if apart is None:
+        return ()
+    if len(text) > it.limits.entities:
+        it.count_entity(node, len(text))  # stops here, before the letters are set
+    try:
+        font = font_of(it, name, bold=a["bold"] is True)
+        if unknown := lettering.unknown_characters(text, font):
+            _report_unknown(it, unknown, at, name)
+            return ()
+        glyphs = lettering.typeset(text, align, apart, font)
+    except NoFontError as lack:
+        message, *hints = lack.args
+        it.report("E0359", message, at, hints=hints, once=True)
+        return ()
+    except FontError as reason:
+        again = "get the file anew, or save it anew as .ttf or .otf with a program for fonts"
+        it.report("E0360", f"`{name}` cannot be drawn with: {reason}", at, hints=[again], once=True)
+        return ()
+    if not glyphs:
+        hint = "write what is to be drawn, or leave the text out"
+        it.report("E0351", "there is nothing to draw in this text", at, hints=[hint], once=True)
+    return glyphs
+
+
+def is_filled(a: Arguments, glyphs: Sequence[Glyph]) -> bool:
+    """Tells whether a drawing fills the letters of a text."""
+    return a["outline"] is not True and not any(glyph.is_stroked for glyph in glyphs)
+
+
+_BRIDGE = 0.1  # width of the bridges of a stencil, in heights of a capital, where none is told
+
+
+def bridge(it: Interpreter, a: Arguments) -> Num | None:
+    """Returns how wide the bridges of a text are (see `Geometry.bridge`); None for none or an error."""
+    stencil, node = a["stencil"], it.call_sites[-1]
+    if stencil is False:
+        return None
+    if a["font"] == TextVal(SINGLE_LINE):
+        what = "letters of single lines enclose nothing that a stencil could hold"
+        it.report("E0342", what, it.place(node), hints=["leave out `stencil`, or the font"], once=True)
+        return None
+    if stencil is True:
+        return number(_BRIDGE, PLAIN)
+    width = constant(it, stencil, node, "the width of bridges") if isinstance(stencil, Num) else 0.0
+    if width is not None and width <= 0:
+        given = f"{width:g}" if isinstance(stencil, Num) else kind_of(stencil)
+        hint = "write `stencil: true` for a tenth of the height, or how wide they are: `stencil: 2mm`"
+        message = f"`stencil` is {given}, and bridges have a width"
+        it.report("E0342", message, it.place(node), hints=[hint], once=True)
+    return number(width, LENGTH) if width and width > 0 else None
+
+
+def _report_unknown(it: Interpreter, unknown: list[str], at: Span | None, font: str) -> None:
+    names = first_few(list(map(lettering.described, unknown)), 5)
+    others = {c: lettering.replacement(c) for c in unknown[:5]}
+    instead = [f"write `{other}` for `{c}`" for c, other in others.items() if other is not None]
+    if font != PLAIN_FONT:
+        it.report("E0350", f"`{font}` has no {names}", at, hints=instead, once=True)
+        return
+    has = "it has Latin, Greek and Cyrillic letters, digits, punctuation, and signs such as `±` `°` `Ø` `→`"
+    it.report("E0350", f"the font has no {names}", at, hints=[*instead, has], once=True)
 
 
 # --- Drawings of other programs in a program: one geometry each, of which the parts are views.
@@ -315,7 +452,10 @@ def _arc(it: Interpreter, g: Geometry, a: Arguments, env: Env) -> None:
         if "radius" in a:
             hidden.append(distance(g.fields["center"], g.fields["start"]))
         radius = certain(g.fields["radius"], Num)
-        hold(it, g, [(length(h), radius) for h in hidden])
+        assert g.span is not None
+        node = ast.Identifier(span=g.span, text=g.type)
+        if comparisons := equated(it, [(length(h), radius) for h in hidden], node):
+            it.hidden.append((g, comparisons))
 
 
 def _by_angles_if_round(a: Arguments) -> Arguments:
@@ -355,17 +495,6 @@ def _arc_by_radius(it: Interpreter, g: Geometry, a: Arguments) -> None:
     g.fields["center"] = positions(it, [center], g, ["center"])[0]
 
 
-def hold(it: Interpreter, g: Geometry, equations: Sequence[tuple[Num, Num]]) -> None:
-    """Adds the equations that belong to a geometry itself: constraints named after it."""
-    assert g.span is not None
-    node = ast.Identifier(span=g.span, text=g.type)
-    made = [compare_numbers(it, "==", left, right, node) for left, right in equations]
-    condition = all_of(made)
-    if not isinstance(condition, bool | Nothing):
-        comparisons = tuple(condition.comparisons())  # type: ignore[union-attr]
-        it.hidden.append((g, comparisons))
-
-
 def _plain(it: Interpreter, g: Geometry, a: Arguments, env: Env) -> None:
     """Sets the fields of a kind that is called in one way to its arguments. Its points are no corners, and a
     direction that may be left out stays 0 until something asks for another.
@@ -391,8 +520,6 @@ def _given(kind: str) -> tuple[tuple[str, ...], tuple[tuple[str, NumberType, boo
 
 
 def _glyphs(it: Interpreter, g: Geometry, a: Arguments, env: Env) -> None:
-    from aidl_lang.building.lettering import bridge, is_filled, typeset
-
     g.glyphs = typeset(it, a)
     g.filled = is_filled(a, g.glyphs)
     it.count_entity(None, len(g.glyphs))
@@ -401,7 +528,6 @@ def _glyphs(it: Interpreter, g: Geometry, a: Arguments, env: Env) -> None:
 
 
 def _traced(it: Interpreter, g: Geometry, a: Arguments, env: Env) -> None:
-    """Takes the outlines from the drawing that the call stands in."""
     g.trace = trace_of(it, certain(a["part"], TextVal).value)
     unit = certain(a["unit"], Num)
     if unit.value < 0:

@@ -361,21 +361,18 @@ def _copied(it: Interpreter, value: Value, copier: Copier, node: ast.Call, env: 
         case _:
             message = f"`{node.callee.text}` copies geometry and structures, and this is {kind_of(value)}"
             hint = "name the thing itself, a list of things, or a call that makes one"
-            it.report("E0331", message, node, hints=[hint])
-            return NOTHING
+            return it.report("E0331", message, node, hints=[hint])
 
 
 def _of_structure(it: Interpreter, source: Structure, motion: Motion, node: ast.Call, env: Env) -> Value:
     here = env.here
     if here.is_within(source):
         hint = "copy it in the structure around it"
-        it.report("E0331", f"`{source.name}` would hold a copy of itself", node, hints=[hint])
-        return NOTHING
+        return it.report("E0331", f"`{source.name}` would hold a copy of itself", node, hints=[hint])
     if not source.is_within(here):
         message = f"`{source.path}` is copied in a structure that does not hold it"
         hint = f"copy it in `{source.parent.path}`" if source.parent else "copy a structure of this one"
-        it.report("E0331", message, node, hints=[hint])
-        return NOTHING
+        return it.report("E0331", message, node, hints=[hint])
     return StructureCopy(source, motion, node)
 
 

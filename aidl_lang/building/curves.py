@@ -24,6 +24,7 @@ from aidl_lang.building.model import (
 from aidl_lang.building.values import Exactness, ListVal, Num, PointVal, certain, length, numbers_of, point
 from aidl_lang.checking.types import Signature, fields_of
 from aidl_lang.checking.units import ANGLE, MaybeDimension
+from aidl_lang.common.lettering import box_around
 from aidl_lang.common.records import record
 
 if TYPE_CHECKING:
@@ -322,8 +323,6 @@ def _text_reach(text: Geometry, here: Structure, side: str) -> Iterator[Expressi
         return
     at, angle = on_text(text, here), number(view(text, here)["angle"])
     if angle.is_constant and angle.value % 90.0 == 0.0:
-        from aidl_lang.common.lettering import box_around
-
         left, bottom, right, top = box_around(text.glyphs)
         for corner in ((left, bottom), (right, bottom), (left, top), (right, top)):
             yield at(corner)[towards(side).axis]

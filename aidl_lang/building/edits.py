@@ -1,4 +1,8 @@
-"""`move`, `rotate` and `scale` as statements: they change a thing made above them."""
+"""`move`, `rotate` and `scale` as statements: they change a thing made above them.
+
+They are looked for when the thing is made, further down in its body, and applied to its arguments: first
+guesses and sizes as written change, their exactness does not.
+"""
 
 from __future__ import annotations
 
@@ -8,14 +12,13 @@ from functools import partial
 from typing import TypeAlias, TypeVar
 
 from aidl_lang.building import expression as ex
-from aidl_lang.building.calls import bound, hoist_values
+from aidl_lang.building.calls import arranged, bound
 from aidl_lang.building.coerce import as_written, whole
 from aidl_lang.building.copies import Copier, centre_of, motion_for
 from aidl_lang.building.curves import DIRECTIONS, STILL, Motion, after, turned, xy
-from aidl_lang.building.evaluate import evaluate, truth, turns
+from aidl_lang.building.evaluate import chosen, evaluate, hoist_values, turns
 from aidl_lang.building.expression import Place
 from aidl_lang.building.model import Geometry, Structure
-from aidl_lang.building.overloads import arranged
 from aidl_lang.building.state import Env, Interpreter, Scope
 from aidl_lang.building.values import (
     NOTHING,
@@ -42,11 +45,6 @@ from aidl_lang.checking.units import ANGLE, LENGTH, UNITS
 from aidl_lang.common.names import fold
 from aidl_lang.common.records import record
 from aidl_lang.syntax import ast
-
-# --- `move`, `rotate` and `scale` as statements: they change a thing made above them.
-#
-# They are looked for when the thing is made, further down in its body, and applied to its arguments: first
-# guesses and sizes as written change, their exactness does not.
 
 T = TypeVar("T")
 
@@ -129,16 +127,10 @@ def _among(
                 for turn in _tried(it, partial(turns, it, statement, env)) or ():
                     hoist_values(turn, body.statements)
                     yield from _among(it, body.statements, turn, wanted)
-            case ast.If(test, then, otherwise):
-                chosen = _tried(it, partial(_chosen, it, test, env))
-                taken = then if chosen else otherwise if chosen is not None else None
-                if taken is not None:
+            case ast.If():
+                if (taken := _tried(it, partial(chosen, it, statement, env))) is not None:
                     hoist_values(env, taken.statements)
                     yield from _among(it, taken.statements, env, wanted)
-
-
-def _chosen(it: Interpreter, test: ast.Expression, env: Env) -> bool:
-    return truth(it, evaluate(it, test, env), test)
 
 
 def _is_on(it: Interpreter, call: ast.Call, env: Env, wanted: tuple[str, tuple[int, ...]]) -> bool:
@@ -310,10 +302,8 @@ def check_edit(it: Interpreter, call: ast.Call, env: Env) -> None:
         why = f"`{shown}` has members"
         hint = f"`{word}` them one by one, as in `for i in … {{ {word}({shown}[i], …) }}`"
     else:
-        why, hint = (
-            f"`{shown}` is not made in this body above this line",
-            f"write it below the line that makes `{shown}`, in the same structure",
-        )
+        why = f"`{shown}` is not made in this body above this line"
+        hint = f"write it below the line that makes `{shown}`, in the same structure"
     it.report("E0333", f"`{word}` changes nothing here: {why}", call, hints=[hint])
 
 
@@ -488,7 +478,6 @@ def _at(x: float, y: float) -> PointVal:
 
 
 def _are_alike(a: Geometry, b: Geometry) -> bool:
-    """Tells whether two geometries draw the same curves as written."""
     one, other = list(a.primitives()) or [a], list(b.primitives()) or [b]
     return len(one) == len(other) and all(map(_is_same, one, other))
 

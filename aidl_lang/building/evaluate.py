@@ -1,11 +1,12 @@
-"""The evaluation of expressions of the language to values."""
+"""The evaluation of expressions of the language to values, and the run of bodies, statement by statement."""
 
 from __future__ import annotations
 
 import math
 import operator
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import partial
+from typing import Any
 
 from aidl_lang.building import expression as ex
 from aidl_lang.building.coerce import (
@@ -21,7 +22,7 @@ from aidl_lang.building.coerce import (
 )
 from aidl_lang.building.members import member, no_index, not_built, read
 from aidl_lang.building.model import Condition, Geometry
-from aidl_lang.building.state import Env, Interpreter, LetBinding, Scope
+from aidl_lang.building.state import Ahead, Candidate, Env, Interpreter, LetBinding, ParamBinding, Scope
 from aidl_lang.building.values import (
     NOTHING,
     Array,
@@ -42,7 +43,9 @@ from aidl_lang.building.values import (
 from aidl_lang.building.wording import compare, conjunction, holds, negation
 from aidl_lang.checking import rules, units
 from aidl_lang.checking.builtins import WORDS
-from aidl_lang.checking.rules import shown
+from aidl_lang.checking.library import signature
+from aidl_lang.checking.resolve import is_definition
+from aidl_lang.checking.rules import blocks, shown
 from aidl_lang.checking.units import UNITS
 from aidl_lang.syntax import ast
 
@@ -57,7 +60,8 @@ def evaluate(it: Interpreter, node: ast.Expression, env: Env) -> Value:
     if it.watched and node in it.watched:
         if isinstance(value, Geometry):
             value = as_point(it, value, node, env) or value
-        it.watch(node, value)
+        if isinstance(value, Num | PointVal):
+            it.written[node] = value.value if isinstance(value, Num) else value.place.written
         return as_written(value)
     return value
 
@@ -213,8 +217,7 @@ def _index(it: Interpreter, node: ast.Index, env: Env) -> Value:
     if isinstance(value, RecordVal) and isinstance(index, TextVal):
         return entry(it, value, index.value, node.index)
     if (items := members(value)) is None:
-        it.misfit(rules.no_members(shown(node.value), type_of(value)), node)
-        return NOTHING
+        return it.misfit(rules.no_members(shown(node.value), type_of(value)), node)
     if (position := whole(it, index, node.index, "an index")) is None:
         return NOTHING
     if isinstance(value, Array):
@@ -271,7 +274,6 @@ def _binary(it: Interpreter, node: ast.Binary, env: Env) -> Value:
 
 
 def _vector(it: Interpreter, node: ast.Binary, left: Value, right: Value) -> Value:
-    """Evaluates points as vectors: sum, difference, and product or quotient with a number."""
     op = node.operator
     if isinstance(left, PointVal) and isinstance(right, PointVal) and op in "+-":
         x, y = arithmetic(it, op, left.x, right.x, node), arithmetic(it, op, left.y, right.y, node)
@@ -281,8 +283,7 @@ def _vector(it: Interpreter, node: ast.Binary, left: Value, right: Value) -> Val
         x, y = arithmetic(it, op, left, right.x, node), arithmetic(it, op, left, right.y, node)
     else:
         sides = shown(node.left), shown(node.right)
-        it.misfit(rules.no_vectors(op, type_of(left), type_of(right), *sides), node)
-        return NOTHING
+        return it.misfit(rules.no_vectors(op, type_of(left), type_of(right), *sides), node)
     return PointVal(x, y) if isinstance(x, Num) and isinstance(y, Num) else NOTHING
 
 
@@ -315,11 +316,9 @@ def arithmetic(it: Interpreter, op: str, a: Num, b: Num, node: ast.Node) -> Num 
         else:
             dimension = _DIMENSION[op](a.dimension, b.dimension)
     except units.UnequalError as pair:
-        it.misfit(rules.unequal(f"`{op}` does not join", *pair.args), node)
-        return NOTHING
+        return it.misfit(rules.unequal(f"`{op}` does not join", *pair.args), node)
     except ValueError as reason:
-        it.report("E0308", f"`{op}` has no meaning here: {reason}", node)
-        return NOTHING
+        return it.report("E0308", f"`{op}` has no meaning here: {reason}", node)
     if op == "%":
         x, y = (constant(it, n, node, "an operand of `%`") for n in (a, b))
         if x is None or y is None:
@@ -353,8 +352,7 @@ def _out_of_range(it: Interpreter, node: ast.Node) -> Nothing:
 
 
 def _no_value(it: Interpreter, node: ast.Node, why: str, *hints: str) -> Nothing:
-    it.report("E0504", f"`{node.span.one_line}` has no value: {why}", node, hints=hints)
-    return NOTHING
+    return it.report("E0504", f"`{node.span.one_line}` has no value: {why}", node, hints=hints)
 
 
 def _comparison(it: Interpreter, node: ast.Comparison, env: Env) -> Value:
@@ -376,8 +374,7 @@ def _membership(it: Interpreter, node: ast.Membership, env: Env) -> Value:
         high = compare(it, "<" if container.exclusive else "<=", value, container.end, node, env, sides)
         return conjunction(it, "and", low, high, node)
     if (items := members(container)) is None:
-        it.misfit(rules.needed("a range or a list", type_of(container)), node.container)
-        return NOTHING
+        return it.misfit(rules.needed("a range or a list", type_of(container)), node.container)
     result: Value = False
     for item in items:
         equal = compare(it, "==", value, item, node, env, sides)
@@ -394,17 +391,22 @@ def _range(it: Interpreter, node: ast.Range, env: Env) -> Value:
         dimension = units.add(start.dimension, end.dimension)
         dimension = units.add(dimension, step.dimension) if step is not None else dimension
     except units.UnequalError as pair:
-        it.misfit(rules.unequal("a range does not join", *pair.args), node)
-        return NOTHING
+        return it.misfit(rules.unequal("a range does not join", *pair.args), node)
     low, high = (Num(n.expression, dimension, n.status) for n in (start, end))
     return RangeVal(low, high, node.exclusive, step)
 
 
-def _conditional(it: Interpreter, node: ast.Conditional, env: Env) -> Value:
+def chosen(it: Interpreter, node: ast.If | ast.Conditional, env: Env) -> Any:
+    """Returns what is taken of two ways; None if there is no other one, or after an error."""
     test = evaluate(it, node.test, env)
     if isinstance(test, Nothing):
-        return NOTHING
-    return evaluate(it, node.then if truth(it, test, node.test) else node.otherwise, env)
+        return None
+    return node.then if truth(it, test, node.test) else node.otherwise
+
+
+def _conditional(it: Interpreter, node: ast.Conditional, env: Env) -> Value:
+    taken = chosen(it, node, env)
+    return NOTHING if taken is None else evaluate(it, taken, env)
 
 
 _EVALUATE: dict[type, Callable[..., Value]] = {
@@ -427,3 +429,87 @@ _EVALUATE: dict[type, Callable[..., Value]] = {
     ast.Range: _range,
     ast.Conditional: _conditional,
 }
+
+
+# --- Bodies: the declarations that hold in the whole of one, and its statements one by one.
+
+
+def run_block(it: Interpreter, statements: Sequence[ast.Statement], env: Env) -> None:
+    """Runs the statements of a body. Callables and constants are visible in the whole of it."""
+    hoist_callables(it, env.scope, statements)
+    hoist_values(env, statements)
+    ahead = Ahead(statements, env)
+    it.ahead.append(ahead)
+    try:
+        for ahead.next, statement in enumerate(statements, start=1):
+            _execute(it, statement, env)
+    finally:
+        it.ahead.pop()
+
+
+def hoist_callables(it: Interpreter, scope: Scope, statements: Iterable[ast.Statement]) -> None:
+    for node in statements:
+        if isinstance(node, ast.Alias):
+            scope.aliases[node.name.text] = node.target.text
+        elif isinstance(node, ast.Callable) and is_definition(node):
+            if node not in it.signatures:
+                it.signatures[node] = signature(node)
+            scope.define(Candidate(it.signatures[node], scope))
+
+
+def hoist_values(env: Env, statements: Iterable[ast.Statement]) -> None:
+    scope = env.scope
+    for node in statements:
+        match node:
+            case ast.Let():
+                scope.values.setdefault(node.name.text, LetBinding(node.value, scope))
+            case ast.Param():
+                scope.values.setdefault(node.name.text, ParamBinding(node, scope, env.here))
+
+
+def _execute(it: Interpreter, node: ast.Statement, env: Env) -> None:
+    """Carries out a statement; definitions were hoisted and do nothing here."""
+    if (run := it.executors.get(type(node))) is None:
+        return
+    it.check_time(node)
+    try:
+        run(it, node, env)
+    except RecursionError:
+        it.too_deep(node)
+
+
+def declared_names(block: ast.Block, *, indexed: bool = False) -> Iterator[str]:
+    """Yields the names that a block gives to geometry and structures; if `indexed`, those with an index."""
+    for node in block.statements:
+        match node:
+            case ast.Assign() | ast.Structure(parameters=None):
+                if node.indices or not indexed:
+                    yield node.name.text
+            case ast.Var() if not indexed:
+                yield node.name.text
+            case ast.For() | ast.If():
+                for inner in blocks(node):
+                    yield from declared_names(inner, indexed=indexed)
+
+
+def stated(
+    it: Interpreter, statements: Sequence[ast.Statement], env: Env
+) -> Iterator[tuple[ast.Statement, Env]]:
+    """Yields the conditions of a block, each where it is read: in the turns of loops and the branch taken."""
+    hoist_values(env, statements)
+    for node in statements:
+        match node:
+            case ast.For():
+                for turn in turns(it, node, env) or ():
+                    yield from stated(it, node.body.statements, turn)
+            case ast.If():
+                if (taken := chosen(it, node, env)) is not None:
+                    yield from stated(it, taken.statements, env)
+            case ast.Constrain(items=items):
+                yield from stated(it, items.statements, env)
+            case ast.Assign():
+                env.scope.values[node.name.text] = LetBinding(node.value, env.scope)
+            case ast.Let():
+                pass
+            case _:
+                yield node, env

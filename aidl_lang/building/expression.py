@@ -12,11 +12,12 @@ import math
 import operator
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import field
-from typing import TYPE_CHECKING, NamedTuple, Protocol, TypeAlias, TypeVar
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias, TypeVar
 
 from aidl_lang.common.records import record
 
 if TYPE_CHECKING:
+    from aidl_lang.building.boxes import Side
     from aidl_lang.building.model import Geometry, Structure
 
 T = TypeVar("T")
@@ -100,41 +101,18 @@ def quoted(path: str) -> str:
     return f"{of}nameless outline {int(number) + 1} in `{outline}`"
 
 
-class Lazy(Protocol):
-    """An expression that is spelled out only when the comparison it stands in is known (a side of a box)."""
-
-    @property
-    def value(self) -> float: ...
-
-    @property
-    def spelled_out(self) -> Expression:
-        """The expression with nothing left out of it."""
-        ...
-
-    def unknowns(self) -> Iterable[Unknown]: ...
-
-
+@record(frozen=False, eq=False, slots=True)
 class Expression:
-    """A node of an expression graph. `payload` is an `Unknown`, a `Lazy`, or a measurement for the ops that
-    need one, and for a constant written as a number in the text, its place; `is_open` marks a graph with a
-    lazy or a measurement in it, so that no other is searched for them.
+    """A node of an expression graph. `payload` is an `Unknown`, the side of a box, or a measurement for the
+    ops that need one, and for a constant written as a number in the text, its place; `is_open` marks a graph
+    with a side or a measurement in it, so that no other is searched for them.
     """
 
-    __slots__ = ("args", "is_open", "op", "payload", "value")
-
-    def __init__(
-        self,
-        op: str,
-        args: tuple[Expression, ...],
-        value: float,
-        is_open: bool = False,
-        payload: object = None,
-    ) -> None:
-        self.op = op
-        self.args = args
-        self.value = value
-        self.is_open = is_open
-        self.payload = payload
+    op: str
+    args: tuple[Expression, ...]
+    value: float
+    is_open: bool = False
+    payload: Any = None
 
     @property
     def is_constant(self) -> bool:
@@ -205,10 +183,6 @@ class Expression:
     def __neg__(self) -> Expression:
         return apply("neg", self)
 
-    def __repr__(self) -> str:
-        inner = ", ".join(map(repr, self.args)) or f"{self.payload or self.value}"
-        return f"{self.op}({inner})"
-
 
 def constant(value: float) -> Expression:
     return Expression("constant", (), float(value))
@@ -266,7 +240,8 @@ def unknown(source: Unknown) -> Expression:
     return Expression("unknown", (), source.guess, payload=source)
 
 
-def lazy(source: Lazy) -> Expression:
+def lazy(source: Side) -> Expression:
+    """Returns a side of a box that is spelled out only when the comparison it stands in is known."""
     return Expression("lazy", (), source.value, is_open=True, payload=source)
 
 
@@ -415,9 +390,9 @@ def unknowns(roots: Iterable[Expression]) -> Iterator[Unknown]:
                 continue
             seen.add(node)
             if node.op == "unknown":
-                yield node.payload  # type: ignore[misc]
+                yield node.payload
             elif node.op == "lazy":
-                yield from node.payload.unknowns()  # type: ignore[attr-defined]
+                yield from node.payload.unknowns()
             else:
                 stack.extend(node.args)
 
@@ -439,7 +414,7 @@ def folded(root: Expression, known: dict[Expression, T], make: Operations[T], le
                 continue
             known[node] = make[node.op](*[known[a] for a in args])
         elif node.op == "lazy":
-            inner: Expression = node.payload.spelled_out  # type: ignore[attr-defined]
+            inner: Expression = node.payload.spelled_out
             if inner not in known:
                 stack.append(inner)
                 continue
@@ -466,7 +441,6 @@ class Evaluator:
 
     def _leaf(self, node: Expression) -> float:
         if node.op == "unknown":
-            assert isinstance(node.payload, Unknown)
             return self.values.get(node.payload, node.payload.guess)
         if node.op == "measure":
             return self.measure(node.payload) if self.measure else math.nan

@@ -12,8 +12,10 @@ from aidl_lang.building import expression as ex
 from aidl_lang.building.boxes import spelled_out
 from aidl_lang.building.coerce import as_point, as_text, as_written, constant, look, numeric
 from aidl_lang.building.construct import part as traced_part
+from aidl_lang.building.construct import typeset
 from aidl_lang.building.curves import xy
 from aidl_lang.building.expression import DEGREE, Expression
+from aidl_lang.building.measured import FORMULAS, OTHERWISE, centroid, formula
 from aidl_lang.building.model import Assertion, Condition, Geometry, Measurement, Structure
 from aidl_lang.building.outlines import OPERATIONS
 from aidl_lang.building.patterns import lettered
@@ -40,6 +42,7 @@ from aidl_lang.checking import rules, units
 from aidl_lang.checking.units import ANGLE, AREA, LENGTH, PLAIN, Dimension, MaybeDimension
 from aidl_lang.common.colors import css_color, rgb, similar_colors
 from aidl_lang.common.diagnostics import Edit, Fix
+from aidl_lang.common.lettering import box_around
 from aidl_lang.common.names import find, nearest
 from aidl_lang.common.prose import did_you_mean
 from aidl_lang.common.source import Span
@@ -95,9 +98,7 @@ def _next(items: Sequence[tuple[float, float]]) -> Sequence[tuple[float, float]]
 
 
 def _refuse(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
-    """Reports that a definition of the library makes no sense of its arguments."""
-    it.refuse(node, certain(a["why"], TextVal).value)
-    return NOTHING
+    return it.refuse(node, certain(a["why"], TextVal).value)
 
 
 # --- Colours while building: whether values are one, and the functions that AIDL's own are made of.
@@ -150,10 +151,9 @@ def _channels(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
 
 def _checked(it: Interpreter, result: Num, node: ast.Node) -> Value:
     if result.expression.is_constant and not ex.is_number(result.value):
-        it.report(
+        return it.report(
             "E0504", f"`{node.span.text}` has no value", node, label="outside the range of this function"
         )
-        return NOTHING
     return result
 
 
@@ -168,8 +168,7 @@ def _of_one(
         try:
             result = dimension(value.dimension)
         except ValueError as reason:
-            it.report("E0308", f"`{node.callee.text}` has no meaning here: a {reason}", node)
-            return NOTHING
+            return it.report("E0308", f"`{node.callee.text}` has no meaning here: a {reason}", node)
         return _checked(it, Num(op(value.expression), result, value.status), node)
 
     return function
@@ -185,26 +184,28 @@ def _to_angle(op: str) -> Function:
 
 
 def _atan2(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
-    y, x = numeric(it, a["y"], node, env), numeric(it, a["x"], node, env)
-    if x is None or y is None:
+    if (found := _all_numbers(it, (a["y"], a["x"]), node, env)) is None:
         return NOTHING
+    y, x = found
     return Num(ex.atan2(y.expression, x.expression), ANGLE, max(x.status, y.status))
 
 
 def _hypot(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
-    x, y = numeric(it, a["a"], node, env), numeric(it, a["b"], node, env)
-    if x is None or y is None:
+    both = _all_numbers(it, (a["a"], a["b"]), node, env)
+    if both is None or (kind := _common(it, both, node)) is None:
         return NOTHING
-    if (kind := _common(it, [x, y], node)) is None:
-        return NOTHING
-    return _checked(it, Num(ex.apply("hypot", x.expression, y.expression), *kind), node)
+    return _checked(it, Num(ex.apply("hypot", *[n.expression for n in both]), *kind), node)
 
 
 def _numbers(it: Interpreter, a: Arguments, name: str, node: ast.Call, env: Env) -> list[Num] | None:
     if (items := members(a[name])) is None:
         it.report("E0302", f"`{node.callee.text}` wants numbers or a list of them", node)
         return None
-    found = [numeric(it, item, node, env) for item in items]
+    return _all_numbers(it, items, node, env)
+
+
+def _all_numbers(it: Interpreter, values: Sequence[Value], node: ast.Call, env: Env) -> list[Num] | None:
+    found = [numeric(it, value, node, env) for value in values]
     return None if None in found else [n for n in found if n is not None]
 
 
@@ -221,11 +222,9 @@ def _common(it: Interpreter, values: list[Num], node: ast.Call) -> tuple[MaybeDi
 
 def _extreme(op: str) -> Function:
     def function(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
-        values = _numbers(it, a, "values", node, env)
-        kind = _common(it, values, node) if values else None
-        if not values or kind is None:
-            if values == []:
-                it.report("E0504", f"`{node.callee.text}` of nothing has no value", node)
+        if (values := _numbers(it, a, "values", node, env)) == []:
+            return it.report("E0504", f"`{node.callee.text}` of nothing has no value", node)
+        if values is None or (kind := _common(it, values, node)) is None:
             return NOTHING
         return Num(ex.apply(op, *[v.expression for v in values]), *kind)
 
@@ -240,8 +239,7 @@ def _sum(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
         sums = [_checked(it, _total(each, LENGTH), node) for each in (x, y)]
         return PointVal(*sums) if all(isinstance(s, Num) for s in sums) else NOTHING  # type: ignore[arg-type]
     values = _numbers(it, a, "values", node, env)
-    kind = _common(it, values, node) if values is not None else None
-    if values is None or kind is None:
+    if values is None or (kind := _common(it, values, node)) is None:
         return NOTHING
     return _checked(it, _total(values, kind[0]), node)
 
@@ -255,9 +253,8 @@ def _total(values: list[Num], dimension: MaybeDimension) -> Num:
 
 def _rounded(function: Callable[[float], float]) -> Function:
     def rounded(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
-        value = numeric(it, a["value"], node, env)
-        known = constant(it, value, node, f"what `{node.callee.text}` rounds") if value else None
-        if value is None or known is None:
+        what, value = f"what `{node.callee.text}` rounds", numeric(it, a["value"], node, env)
+        if value is None or (known := constant(it, value, node, what)) is None:
             return NOTHING
         if not ex.is_number(known):
             return _checked(it, number(known), node)
@@ -288,8 +285,7 @@ def _choice(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
         hints = did_you_mean(f'"{like}"' for like in nearest(word.value, words))
         allowed = ", ".join(f'`"{w}"`' for w in words)
         message = f'"{word.value}" is not one of the words that are meant here'
-        it.report("E0516", message, node, hints=[*hints, f"it is one of {allowed}"])
-        return NOTHING
+        return it.report("E0516", message, node, hints=[*hints, f"it is one of {allowed}"])
     return TextVal(meant)
 
 
@@ -307,8 +303,7 @@ def _mark(status: Exactness) -> Function:
             return with_numbers(value, lambda n: Num(n.expression, n.dimension, status))
         message = f"`{node.callee.text}` marks a number or a point, and this is {kind_of(value)}"
         hint = "to hold a geometry where it was written: `constrain fixed(…)`"
-        it.report("E0310", message, node, hints=[hint])
-        return NOTHING
+        return it.report("E0310", message, node, hints=[hint])
 
     return function
 
@@ -339,13 +334,11 @@ def _nearest(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
 
 def _where(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
     """Returns one of two numbers by the sign of a third, which the solver may decide."""
-    test, yes, no = (numeric(it, a[name], node, env) for name in ("value", "positive", "negative"))
-    if test is None or yes is None or no is None:
+    found = _all_numbers(it, (a["value"], a["positive"], a["negative"]), node, env)
+    if found is None or (kind := _common(it, found[1:], node)) is None:
         return NOTHING
-    if (kind := _common(it, [yes, no], node)) is None:
-        return NOTHING
-    status = max(kind[1], test.status)
-    return Num(ex.apply("select", test.expression, yes.expression, no.expression), kind[0], status)
+    status = max(n.status for n in found)
+    return Num(ex.apply("select", *[n.expression for n in found]), kind[0], status)
 
 
 def _shown(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
@@ -373,13 +366,10 @@ def _measure(kind: str, dimension: Dimension) -> Function:
 
 
 def _centroid(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
-    from aidl_lang.building.measured import FORMULAS, OTHERWISE, centroid, formula
-
     of = a["of"]
     found = centroid(of, env.here) if isinstance(of, Geometry) else None
     if found is None or not isinstance(of, Geometry):
-        it.report("E0512", f"`{node.span.one_line}` has no formula", node, hints=[FORMULAS])
-        return NOTHING
+        return it.report("E0512", f"`{node.span.one_line}` has no formula", node, hints=[FORMULAS])
     where, area = it.place(node) or node.span, Measurement("area", (of,))
     if not any(known.span == where for known in it.assertions):
         foreseen = formula(area)
@@ -392,9 +382,6 @@ def _centroid(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
 
 def _ink(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
     """Returns the box of the letters around the start of the first line, in heights of a capital."""
-    from aidl_lang.building.lettering import typeset
-    from aidl_lang.common.lettering import box_around
-
     if not (glyphs := typeset(it, a)):
         return NOTHING
     sides = zip(("left", "bottom", "right", "top"), box_around(glyphs), strict=True)

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 
 from aidl_lang.building import expression as ex
 from aidl_lang.building.boxes import SIDES, Box, foreseen, unmoved, with_measured
-from aidl_lang.building.calls import hoist_values
 from aidl_lang.building.coerce import as_point, numeric
 from aidl_lang.building.curves import ask_to_turn, defining
-from aidl_lang.building.evaluate import evaluate, truth, turns
+from aidl_lang.building.evaluate import evaluate, stated
+from aidl_lang.building.measured import FORMULAS, OTHERWISE, formula
 from aidl_lang.building.model import (
     Assertion,
     Comparison,
@@ -20,7 +20,7 @@ from aidl_lang.building.model import (
     Measurement,
     Structure,
 )
-from aidl_lang.building.state import Env, Interpreter, LetBinding, Reach
+from aidl_lang.building.state import Env, Interpreter, Reach
 from aidl_lang.building.values import (
     Array,
     ListVal,
@@ -44,7 +44,6 @@ from aidl_lang.building.wording import (
     compared,
     differences,
     givens,
-    placed_by,
     rounding,
     sides,
     value_unknowns,
@@ -101,7 +100,7 @@ def record_dimension(it: Interpreter, node: ast.Call, env: Env) -> None:
         hint = "`tolerance: 0.1` is written as ±0.1"
         it.report("E0590", "a tolerance is above 0", options(node)["tolerance"], hints=[hint])
     else:
-        it.by_hand.append(_constraint(Wording(node, it, env, evaluate), ()))
+        it.by_hand.append(_constraint(Wording(node, it, env), ()))
 
 
 def axis_of(node: ast.Expression, value: Value) -> int | None:
@@ -139,11 +138,11 @@ def impose(it: Interpreter, node: ast.Expression, env: Env, weight: float | None
         for inner in handed:
             impose(it, inner, env, weight)
         return
-    said = Wording(node, it, env, _read)
+    said = Wording(node, it, env)
     if isinstance(node, ast.Call) and _holds_place(it, node):
         value = _held(it, node, env)
     else:
-        value = _read(it, node, env)
+        value = evaluate(it, _as_relation(node), env)
     match value:
         case bool() if it.states_constants and weight is None:
             _state_constants(said)
@@ -196,7 +195,6 @@ def _turn(env: Env) -> str:
 
 
 def _never(wording: Wording, weight: float | None) -> None:
-    """Reports a condition, or a wish, over constants that is false."""
     it, node = wording.it, wording.node
     if any(part in it.watched for part in ast.walk(node)):
         return  # reported as a breach of validity, and read with values as written
@@ -242,8 +240,6 @@ def _refuses_measured(it: Interpreter, comparisons: Iterable[Comparison], node: 
     """Reports a condition on what is known once all is solved. Returns whether it did."""
     if all(measurement.kind in SIDES for measurement in _measurements(comparisons)):
         return False
-    from aidl_lang.building.measured import FORMULAS
-
     message = "areas, perimeters and clearances of outlines are known after solving only"
     instead = "put it in an `assert`, or constrain boxes and distances instead"
     apart = "`clearance` constrains between points, lines, circles, slots and convex shapes; name these"
@@ -305,8 +301,6 @@ def _by_formulas(said: Wording, comparisons: list[Comparison], weight: float | N
     """Returns comparisons with areas and perimeters by their formulas; what is drawn is measured again."""
     if all(m.kind in SIDES for m in _measurements(comparisons)):
         return comparisons
-    from aidl_lang.building.measured import OTHERWISE, formula
-
     sides = (with_measured(formula, c.left, c.right) for c in comparisons)
     found = [replace(c, left=a, right=b) for c, (a, b) in zip(comparisons, sides, strict=True)]
     if weight is None and all(m.kind in SIDES for m in _measurements(found)):
@@ -332,7 +326,6 @@ def _look_again(
 
 
 def _is_angle(node: ast.Node) -> bool:
-    """Tells whether a part of a statement asks for the direction of something."""
     match node:
         case ast.Member(name=name) | ast.Call(callee=name):
             return fold(name.text) == "angle"
@@ -372,10 +365,6 @@ def _impose_within(said: Wording, shape: Geometry, comparisons: list[Comparison]
         said.it.add_constraint(Constraint(said.env.here, own, text, shape.span, None, turn, is_inherent=True))
 
 
-def _read(it: Interpreter, node: ast.Expression, env: Env) -> Value:
-    return evaluate(it, _as_relation(node), env)
-
-
 def _placed_in_call(said: Wording, comparisons: list[Comparison]) -> list[Comparison]:
     """Holds the last argument of the call in `distance(a, b) == 18`, as in every call."""
     node = said.node
@@ -387,7 +376,7 @@ def _placed_in_call(said: Wording, comparisons: list[Comparison]) -> list[Compar
         return comparisons
     values = [evaluate(said.it, p, said.env) for p in positional[:-1]]
     placed = frozenset(u for v in values for u in value_unknowns(v, said.env.here))
-    return [placed_by(c, c.placed & placed or c.placed) for c in comparisons]
+    return [replace(c, moved=c.placed & placed or c.placed, parties=()) for c in comparisons]
 
 
 def record_assertion(it: Interpreter, node: ast.Assert, env: Env, shape: str = "") -> None:
@@ -400,7 +389,7 @@ def record_assertion(it: Interpreter, node: ast.Assert, env: Env, shape: str = "
         return
     message = evaluate(it, node.message, env) if node.message is not None else None
     told = message.value if isinstance(message, TextVal) else None
-    wording = Wording(node.test, it, env, evaluate)
+    wording = Wording(node.test, it, env)
     if value is False and shape:
         why = told if told is not None else f"`{node.test.span.one_line}` is false"
         false = differences(wording, ex.Evaluator({}), EXACT)
@@ -454,7 +443,12 @@ def _numbers(it: Interpreter, value: Value, node: ast.Expression, env: Env) -> I
 def read_constraint(it: Interpreter, node: ast.Statement, env: Env) -> None:
     match node:
         case ast.Constrain(items=items):
-            _read_items(it, items.statements, env)
+            for inner, place in stated(it, items.statements, env):
+                read_constraint(it, inner, place)
+        case ast.Equation():
+            it.report("N0501", "`=` inside `constrain` is read as `==`", node, once=True)
+            if node not in it.program.rejected:
+                impose(it, node.meant, env)
         case ast.ExpressionStatement(value=value):
             impose(it, value, env)
         case ast.Prefer():
@@ -473,25 +467,3 @@ def _prefer(it: Interpreter, node: ast.Prefer, env: Env) -> None:
             it.report("E0511", f"a weight must be more than 0, and this is {weight:g}", node.weight)
             return
     impose(it, node.value, env, weight)
-
-
-def _read_items(it: Interpreter, statements: Sequence[ast.Statement], env: Env) -> None:
-    hoist_values(env, statements)
-    for node in statements:
-        match node:
-            case ast.For():
-                for turn in turns(it, node, env) or ():
-                    _read_items(it, node.body.statements, turn)
-            case ast.If():
-                test = evaluate(it, node.test, env)
-                if not isinstance(test, Nothing):
-                    chosen = node.then if truth(it, test, node.test) else node.otherwise
-                    _read_items(it, chosen.statements if chosen else (), env)
-            case ast.Equation():
-                it.report("N0501", "`=` inside `constrain` is read as `==`", node)
-                if node not in it.program.rejected:
-                    impose(it, node.meant, env)
-            case ast.Assign():
-                env.scope.values[node.name.text] = LetBinding(node.value, env.scope)
-            case _:
-                read_constraint(it, node, env)

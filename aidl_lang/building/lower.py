@@ -1,17 +1,18 @@
-"""The step from Model to Problem: the structure tree for the solver, unknowns and constraints by number."""
+"""The step from Model to Problem: the structure tree for the solver, unknowns and constraints by number.
+
+The solver's groups are the structures, parents first. Unknowns that nothing can move are constants there: a
+frame that no constraint mentions, an argument that was read while building, an angle that nothing turns.
+"""
 
 from __future__ import annotations
 
-import operator
-from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import field
-from typing import Generic, NamedTuple, Protocol, TypeVar
+from collections.abc import Hashable, Iterable, Iterator, Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
 from aidl_lang.building import expression as ex
-from aidl_lang.building.expression import Expression, Unknown
+from aidl_lang.building.expression import Expression, Place, Unknown
 from aidl_lang.building.model import (
     Comparison,
     Condition,
@@ -20,6 +21,7 @@ from aidl_lang.building.model import (
     Model,
     Structure,
     chain,
+    convert,
     is_size,
     own_geometry,
 )
@@ -30,82 +32,6 @@ from aidl_lang.solver import Constraint as SolverConstraint
 from aidl_lang.solver import Problem, Relation, Row
 from aidl_lang.solver.expression import TapeBuilder
 from aidl_lang.solver.problem import constraint_arrays
-
-# --- Places of structures in the frame of the root, in numbers of any kind.
-#
-# `model.convert` does the same with expressions, from any frame to any other. The drawing is wanted in the
-# frame of the root: the numbers that are read off a solution, and those that the solver observes.
-
-N = TypeVar("N")
-
-
-class Arithmetic(Protocol[N]):
-    """The arithmetic of numbers of one kind."""
-
-    def add(self, a: N, b: N, /) -> N: ...
-
-    def sub(self, a: N, b: N, /) -> N: ...
-
-    def mul(self, a: N, b: N, /) -> N: ...
-
-    def neg(self, a: N, /) -> N: ...
-
-
-FLOATS: Arithmetic[float] = operator
-"""That of plain numbers."""
-
-
-class _Step(NamedTuple, Generic[N]):
-    """The frame of a structure in its parent's; `turn` is its cosine and sine, None if exactly level."""
-
-    x: N
-    y: N
-    turn: tuple[N, N] | None
-    mirrored: bool
-
-
-@record(frozen=False)
-class Placing(Generic[N]):
-    """A converter of points to the frame of the root; `number` evaluates, `arithmetic` goes on from there."""
-
-    number: Callable[[Expression], N]
-    arithmetic: Arithmetic[N]
-    _ways: dict[Structure, tuple[_Step[N], ...]] = field(default_factory=dict)
-
-    def __call__(self, x: N, y: N, owner: Structure) -> tuple[N, N]:
-        """Returns a point in the frame of `owner`, as the root sees it."""
-        if (way := self._ways.get(owner)) is None:
-            way = self._way(owner)
-        if not way:
-            return x, y
-        add, sub, mul = self.arithmetic.add, self.arithmetic.sub, self.arithmetic.mul
-        for step in way:
-            if step.mirrored:
-                x = self.arithmetic.neg(x)
-            if step.turn is not None:
-                c, s = step.turn
-                x, y = sub(mul(c, x), mul(s, y)), add(mul(s, x), mul(c, y))
-            x, y = add(step.x, x), add(step.y, y)
-        return x, y
-
-    def _way(self, s: Structure) -> tuple[_Step[N], ...]:
-        if (known := self._ways.get(s)) is None:
-            known = () if s.parent is None else (self._step(s), *self._way(s.parent))
-            self._ways[s] = known
-        return known
-
-    def _step(self, s: Structure) -> _Step[N]:
-        frame, number, turn = s.frame, self.number, None
-        if not frame.is_level:
-            cosine, sine = ex.towards(frame.rotation)
-            turn = number(cosine), number(sine)
-        return _Step(number(frame.x), number(frame.y), turn, frame.mirrored)
-
-
-# --- The step from Model to Problem: the structure tree for the solver, unknowns and constraints by number.
-#
-# The solver's groups are the structures, parents first. Unknowns that nothing can move are constants there:
-# a frame that no constraint mentions, an argument that was read while building, an angle that nothing turns.
 
 _RADIAN = 180.0 / np.pi
 
@@ -165,8 +91,7 @@ class _Lowering:
         self.named_things: dict[Structure, set[Hashable]] = {}
         # Every number that defines the drawing, by structure.
         self.seen = {s: [at for _, _, at in seen(s)] for s in self.structures}
-        self.size = _extent(self.seen)
-        self.place = Placing(self._node, self.tape)
+        self.size = _extent(self.seen, model.root)
 
     def run(self) -> Lowered:
         self._number_unknowns()
@@ -191,7 +116,9 @@ class _Lowering:
             scale=np.array([_RADIAN / self.size if u.angular else 1.0 for u in found], dtype=np.float64),
             kept=np.array([u.kept for u in found], dtype=np.bool_),
             group=np.array([self.groups[self._placer(u)] for u in found], dtype=np.intp),
-            frame_of=np.array([self._frame_of(u) for u in found], dtype=np.intp),
+            frame_of=np.array(
+                [self.groups[m] if (m := self._moved(u)) else -1 for u in found], dtype=np.intp
+            ),
             axis=np.array([_axis(u) for u in found], dtype=np.intp),
             longest=np.array([_LONGEST_TURN if u.angular else np.inf for u in found], dtype=np.float64),
             parent=np.array(parents, dtype=np.intp),
@@ -246,9 +173,9 @@ class _Lowering:
     def _is_outline(self, unknown: Unknown) -> bool:
         return unknown.outline and unknown in self.mentioned and unknown.owner not in self.holders
 
-    def _frame_of(self, unknown: Unknown) -> int:
-        moved = unknown.owner if self._is_outline(unknown) else unknown.frame_of
-        return self.groups[moved] if moved is not None else -1
+    def _moved(self, unknown: Unknown) -> Structure | None:
+        """Returns the structure that an unknown moves as a whole; None for one of its contents."""
+        return unknown.owner if self._is_outline(unknown) else unknown.frame_of
 
     def _stands(self, unknown: Unknown) -> bool:
         """Tells whether an unknown shifts a frame that lies on its parent's, with something in it at an exact
@@ -285,8 +212,8 @@ class _Lowering:
             for structure, sides in comparison.boxes.items():
                 self._name_thing(constraint.holder, structure, sides)
             for unknown in comparison.spoken_of:
-                if unknown.frame_of is not None or self._is_outline(unknown):
-                    self._name_thing(constraint.holder, unknown.frame_of or unknown.owner, None)
+                if (moved := self._moved(unknown)) is not None:
+                    self._name_thing(constraint.holder, moved, None)
                 elif not unknown.kept:
                     thing = unknown.holder, unknown.field.rpartition(".")[0]
                     self._name_thing(constraint.holder, unknown.owner, thing)
@@ -321,12 +248,8 @@ class _Lowering:
 
     def _observables(self, s: Structure) -> Iterator[int]:
         """Yields the numbers of a structure that a reader could see move, and its variables."""
-        node = self._node
         for at in self.seen[s]:
-            if len(at) == 2:
-                yield from self.place(node(at[0]), node(at[1]), s)
-            else:
-                yield node(at[0])
+            yield from map(self._node, convert(at, s, self.model.root) if isinstance(at, Place) else at)
         yield from (self.tape.unknown(self.numbers[u]) for u in self.variables.get(s, ()))
 
     # --- Constraints ---------------------------------------------------------------------------
@@ -355,7 +278,7 @@ class _Lowering:
                     inside.add(structure)
                 mentioned.update(ex.unknowns(_places(structure, constraint.holder)))
             for unknown in mentioned:
-                moved = unknown.owner if self._is_outline(unknown) else unknown.frame_of
+                moved = self._moved(unknown)
                 (inside if moved is None else whole).add(moved or unknown.owner)
         return whole, inside
 
@@ -450,12 +373,11 @@ def _axis(unknown: Unknown) -> int:
 
 
 def _places(structure: Structure, holder: Structure) -> Iterator[Expression]:
-    """Yields the frames that place a structure in the one that holds it."""
     for frame in (s.frame for s in chain(structure, holder)):
         yield from (frame.x, frame.y, frame.rotation)
 
 
-_Seen = tuple[Expression, Expression] | tuple[Expression]  # a place, or a number
+_Seen = Place | tuple[Expression]  # a place, or a number
 
 
 def seen(s: Structure) -> Iterator[tuple[Geometry | Structure, str, _Seen]]:
@@ -467,14 +389,14 @@ def seen(s: Structure) -> Iterator[tuple[Geometry | Structure, str, _Seen]]:
             yield geometry, path, at
     if s.plan:
         left, bottom, width, height = s.plan
-        yield s, s.path, (left, bottom)
-        yield s, s.path, (left + width, bottom + height)
+        yield s, s.path, Place(left, bottom)
+        yield s, s.path, Place(left + width, bottom + height)
 
 
 def _seen_geometry(geometry: Geometry) -> Iterator[tuple[str, _Seen]]:
     for name, value in geometry.fields.items():
         if isinstance(value, PointVal):
-            yield f"{geometry.path}.{name}", (value.x.expression, value.y.expression)
+            yield f"{geometry.path}.{name}", value.place
         elif isinstance(value, Num):
             yield f"{geometry.path}.{name}", (value.expression,)
     # A pattern begins where the outline does that it fills: where what it repeats stands is not seen.
@@ -493,22 +415,20 @@ def _is_spanned(unknown: Unknown) -> bool:
 
 
 def _numbered(keys: Iterable[Hashable]) -> NDArray[np.intp]:
-    """Returns a number for each key, the same for equal ones."""
     numbers: dict[Hashable, int] = {}
     return np.array([numbers.setdefault(key, len(numbers)) for key in keys], dtype=np.intp)
 
 
-def _extent(drawn: Mapping[Structure, Iterable[_Seen]]) -> float:
+def _extent(drawn: Mapping[Structure, Iterable[_Seen]], root: Structure) -> float:
     """Returns about the extent of the places at the first guesses in mm: the power of two above it, at least
     1.
 
     So a small change of a model changes no tolerance, and nothing in parts that it does not concern.
     """
-    place = Placing(lambda e: e.value, FLOATS)
     low, high = 0.0, 0.0
     for s, found in drawn.items():
         for at in found:
-            for value in place(at[0].value, at[1].value, s) if len(at) == 2 else ():
+            for value in convert(at, s, root).written if isinstance(at, Place) else ():
                 if abs(value) < 1e12:
                     low, high = min(low, value), max(high, value)
     return float(2.0 ** np.ceil(np.log2(max(high - low, 1.0))))

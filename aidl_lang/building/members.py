@@ -49,7 +49,7 @@ from aidl_lang.building.values import (
     type_of,
     with_numbers,
 )
-from aidl_lang.building.wording import compare_numbers
+from aidl_lang.building.wording import equated
 from aidl_lang.checking import rules, units
 from aidl_lang.checking.binding import MEMBERS
 from aidl_lang.checking.builtins import FINISHES, ROTATION
@@ -82,7 +82,6 @@ def passed(
 
 
 def _drawn(value: Value) -> Geometry | Structure | None:
-    """Returns a geometry or a structure that a value is, or holds; None if there is none."""
     if isinstance(value, Geometry | Structure):
         return value
     held = value.fields.values() if isinstance(value, RecordVal) else members(value) or ()
@@ -141,9 +140,7 @@ def _own_point(it: Interpreter, binding: PassedBinding, point: PointVal, here: S
 
 
 def _hold_equal(it: Interpreter, binding: PassedBinding, pairs: list[tuple[Num, Num]]) -> None:
-    conditions = [compare_numbers(it, "==", own, outer, binding.node) for own, outer in pairs]
-    comparisons = tuple(c for m in conditions if isinstance(m, Condition) for c in m.comparisons())
-    span = it.place(binding.node)
+    comparisons, span = equated(it, pairs, binding.node), it.place(binding.node)
     if comparisons and span is not None:
         text = f"{binding.instance.name}.{binding.name} == {span.text}"
         it.add_constraint(Constraint(binding.holder, comparisons, text, span))
@@ -154,8 +151,7 @@ def not_built(it: Interpreter, node: ast.Name, branch: ast.If) -> Value:
     message = f"`{node.text}` was not built, because of `if {test}`"
     hint = f"mention it only where it is built: under the same `if {test}`"
     other = Label(branch.test.span, "this branch was not taken")
-    it.report("E0514", message, node, label="mentioned here", hints=[hint], secondary=[other])
-    return NOTHING
+    return it.report("E0514", message, node, label="mentioned here", hints=[hint], secondary=[other])
 
 
 def read(it: Interpreter, binding: NameBinding, node: ast.Node, env: Env) -> Value:
@@ -170,8 +166,7 @@ def _read_let(it: Interpreter, let: LetBinding, node: ast.Node, env: Env) -> Val
     if (seen := let.seen.get((env.here, env.reach))) is not None:
         return seen
     if let.running:
-        it.report("E0207", f"`{node.span.text}` is defined by way of itself", node)
-        return NOTHING
+        return it.report("E0207", f"`{node.span.text}` is defined by way of itself", node)
     let.running = True
     try:
         value = it.evaluate(let.node, Env(let.scope, env.here, env.reach))
@@ -376,8 +371,7 @@ def _refuse_own_box(it: Interpreter, node: ast.Node, env: Env) -> Value:
     message = f"geometry of `{here}` cannot use `{text}`, which follows from the geometry of `{here}`"
     guess = "write a first guess here and say the relation as a constraint"
     hint = f"take the box of a geometry, as `outline.bb`, or {guess}"
-    it.report("E0401", message, node, label="the box that this geometry is in", hints=[hint])
-    return NOTHING
+    return it.report("E0401", message, node, label="the box that this geometry is in", hints=[hint])
 
 
 def no_index(it: Interpreter, node: ast.Index, known: list[int], wanted: int) -> Value:
@@ -390,8 +384,7 @@ def no_index(it: Interpreter, node: ast.Index, known: list[int], wanted: int) ->
     hint = f"members have the indices they were given: in order, number {wanted} is `{name}[{meant}]`"
     fix = Fix(f"write `{name}[{meant}]`", (Edit(node.index.span, meant),)) if by_place else None
     message, hints = f"`{name}` has no member {wanted}: {has}", [hint] if by_place else ()
-    it.report("E0503", message, node.index, hints=hints, fix=fix)
-    return NOTHING
+    return it.report("E0503", message, node.index, hints=hints, fix=fix)
 
 
 # --- Knobs: a `param` with its range, its value from the program or from outside.
@@ -411,8 +404,7 @@ def read_param(it: Interpreter, binding: ParamBinding, node: ast.Node) -> Value:
     """Returns the value of a knob: evaluated, checked against its range and registered on first use."""
     if binding.known is None:
         if binding.running:
-            it.report("E0207", f"param `{binding.node.name.text}` is defined by way of itself", node)
-            return NOTHING
+            return it.report("E0207", f"param `{binding.node.name.text}` is defined by way of itself", node)
         binding.running = True
         binding.known = _evaluate(it, binding)
         binding.running = False

@@ -17,6 +17,7 @@ from aidl_lang.building.expression import Expression, Place, Unknown
 from aidl_lang.building.values import Num, PointVal, leaves
 from aidl_lang.checking.types import StructureType, TruthType, Type, fields_of, geometry_type
 from aidl_lang.checking.units import MaybeDimension
+from aidl_lang.common.lettering import Glyph, silhouette
 from aidl_lang.common.records import record
 from aidl_lang.common.source import Span
 from aidl_lang.syntax import ast
@@ -27,7 +28,6 @@ if TYPE_CHECKING:
     from aidl_lang.building.wording import Wording
     from aidl_lang.common.drawings import Trace
     from aidl_lang.common.font_files import Curve
-    from aidl_lang.common.lettering import Glyph
 
 SIZES = fields_of("size") | {"width", "thickness", "fillet", "chamfer"}
 """Names of sizes, which are never negative."""
@@ -127,8 +127,6 @@ class Geometry:
         """The silhouette of a text or a drawing in its own units (see `lettering.silhouette`)."""
         if self.trace is not None:
             return self.trace.silhouette
-        from aidl_lang.common.lettering import silhouette
-
         return silhouette([curve for glyph in self.glyphs for curve in glyph.curves])
 
     @property
@@ -303,10 +301,7 @@ class Structure:
 
     def is_within(self, other: Structure) -> bool:
         """Tells whether this structure is `other` or lies below it."""
-        here: Structure | None = self
-        while here is not None and here is not other:
-            here = here.parent
-        return here is other
+        return other in chain(self)
 
 
 Holder = Geometry | Structure
@@ -340,8 +335,6 @@ def chain(structure: Structure, up_to: Structure | None = None) -> list[Structur
 
 
 def common_ancestor(a: Structure, b: Structure) -> Structure:
-    if a.is_within(b):
-        return b
     above = set(chain(a))
     return next(s for s in chain(b) if s in above)
 

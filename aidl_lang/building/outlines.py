@@ -327,8 +327,7 @@ def finish_size(it: Interpreter, value: Value, name: str, node: ast.Member, env:
         if any(f.kind == kind and not f.sizes and value in f.of for f in value.owner.finishes):
             message = f"`{node.span.one_line}` is the largest that fits, which only the drawing knows"
             hint = "give it a number to refer to it: of one that is too large the most is told"
-            it.report("E0526", message, node, hints=[hint])
-            return NOTHING
+            return it.report("E0526", message, node, hints=[hint])
         value, key = value.container, ""  # type: ignore[assignment]
     return None
 

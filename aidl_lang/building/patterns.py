@@ -1,16 +1,20 @@
-"""Many of a thing, laid out by a pitch, a radius or a curve, and texts along curves."""
+"""Many of a thing, laid out by a pitch, a radius or a curve, and texts along curves.
+
+These are built in because they make structures, which no definition of the language can do. A template is
+instantiated once; the other members are copies over the same unknowns.
+"""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Sequence
 from itertools import pairwise, product
-from typing import TYPE_CHECKING
 
 from aidl_lang.building import expression as ex
+from aidl_lang.building.along import FREE_KINDS, KINDS, Way, crossings, reading_way, way_along, within
 from aidl_lang.building.boxes import box_of
 from aidl_lang.building.coerce import whole
-from aidl_lang.building.construct import positions, size
+from aidl_lang.building.construct import bridge, is_filled, positions, size, typeset
 from aidl_lang.building.copies import centre_of, copied
 from aidl_lang.building.curves import NOWHERE, Motion, defining, turned, xy
 from aidl_lang.building.expression import Expression, Place
@@ -36,19 +40,10 @@ from aidl_lang.building.values import (
     spliced,
 )
 from aidl_lang.checking.units import ANGLE, LENGTH
+from aidl_lang.common.lettering import ALIGNMENTS
 from aidl_lang.common.prose import with_article
 from aidl_lang.common.records import record
 from aidl_lang.syntax import ast
-
-if TYPE_CHECKING:
-    from aidl_lang.building.along import Way
-
-# --- `linear_array`, `grid`, `polar_array` and `along`: many of a thing, laid out by a pitch, a radius, a
-# curve.
-#
-# They are built in because they make structures, which no definition of the language can do. A template is
-# instantiated once; the other members are copies over the same unknowns.
-
 
 _ORIGIN = PointVal(number(0.0, LENGTH), number(0.0, LENGTH))
 
@@ -64,8 +59,7 @@ class _Call:
     settings: Geometry
 
     def wrong(self, message: str, hint: str) -> Nothing:
-        self.it.report("E0332", message, self.node, hints=[hint])
-        return NOTHING
+        return self.it.report("E0332", message, self.node, hints=[hint])
 
     def count(self, name: str) -> int | None:
         found = whole(self.it, self.a[name], self.node, f"`{name}`")
@@ -140,12 +134,9 @@ class _Call:
         spans = [[box.side(side).value for side in sides] for sides in (("left", "right"), ("bottom", "top"))]
         if any(at.value and low * high > 0 for at, (low, high) in zip(place, spans, strict=True)):
             x, y = (f"{(low + high) / 2:g}" for low, high in spans)
-            self.it.report(
-                "W0511",
-                f"what is repeated stands at ({x}, {y}) already, which is added to the place of the row",
-                self.node,
-                hints=["write it around the origin; or give no place: the row begins where it stands"],
-            )
+            message = f"what is repeated stands at ({x}, {y}) already, which is added to the place of the row"
+            hint = "write it around the origin; or give no place: the row begins where it stands"
+            self.it.report("W0511", message, self.node, hints=[hint])
 
     def laid_out(self, motions: Iterable[tuple[Indices, Motion | None]]) -> Value:
         """Returns the members; one without a motion is the thing itself."""
@@ -264,8 +255,6 @@ def _step(call: _Call, n: int) -> Expression:
 
 
 def _along(call: _Call) -> Value:
-    from aidl_lang.building.along import within
-
     way = _way(call)
     off: list[Expression] = []
     corners: list[Expression] = []
@@ -284,8 +273,7 @@ def _along(call: _Call) -> Value:
         return NOTHING
     if len(places) * len(way.stretches) > _MOST_ALONG:
         what = f"{len(places)} members along {len(way.stretches)} curves are too many"
-        call.it.report("E0805", f"{what}: their product is at most {_MOST_ALONG}", call.node)
-        return NOTHING
+        return call.it.report("E0805", f"{what}: their product is at most {_MOST_ALONG}", call.node)
     turns = call.a.get("turn") is not False
     about = call.centre()
 
@@ -347,8 +335,6 @@ _MOST_ALONG = 20_000  # members times curves: each place is worked out over all 
 
 
 def _way(call: _Call) -> Way | None:
-    from aidl_lang.building.along import way_along
-
     curves = _curves(call)
     found = way_along(curves, call.env.here) if curves else None
     if curves is not None and found is None:
@@ -358,8 +344,6 @@ def _way(call: _Call) -> Way | None:
 
 
 def _curves(call: _Call) -> list[Geometry] | None:
-    from aidl_lang.building.along import FREE_KINDS, KINDS
-
     given = [v for v in spliced(call.a["curve"]) if isinstance(v, Geometry)]
     drawn = [p for g in given for p in g.primitives(even_construction=True)]
     curves = [p for p in drawn if p.type != "point"]
@@ -373,8 +357,6 @@ def _curves(call: _Call) -> list[Geometry] | None:
 
 def _point_at(call: _Call) -> Value:
     """Returns the point of curves at a length from their start, or the first or last that has an x or a y."""
-    from aidl_lang.building.along import crossings
-
     at, axis = certain(call.a["at"], Num), call.a.get("axis")
     if axis is None:
         if (way := _way(call)) is None:
@@ -440,27 +422,22 @@ _UPRIGHT = TextVal("upright")  # the side of a curve that is not told
 
 def lettered(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
     """Returns the characters of a text along a curve, each a geometry that stands upright on it."""
-    from aidl_lang.building.along import KINDS, reading_way
-    from aidl_lang.building.lettering import bridge, is_filled, report_once, typeset
-    from aidl_lang.common.lettering import ALIGNMENTS
-
     given = [v for v in spliced(a["curve"]) if isinstance(v, Geometry)]
     curves = [p for g in given for p in g.primitives(even_construction=True) if p.type != "point"]
     is_simple = all(c.type in KINDS for c in curves) and not any(g.recipe for g in given)
-    inside = a["inside"]
+    inside, place = a["inside"], it.place(it.call_sites[-1])
     if inside != _UPRIGHT and not isinstance(inside, bool):
         what = f"`inside` is {kind_of(inside)}, and tells the side of a curve by true or false"
         hint = "leave it out for the side on which it is upright"
-        report_once(it, "E0516", what, it.call_sites[-1], [hint])
-        return NOTHING
+        return it.report("E0516", what, place, hints=[hint], once=True)
     side = inside if isinstance(inside, bool) else None
     way = reading_way(curves, env.here, inside=side) if curves and is_simple else None
     if way is None:
         what = with_article(given[0].type) if len(given) == 1 else "no one curve"
         message = f"a text follows a circle, or an open way of lines and arcs, and this is {what}"
         hint = "name an edge of an outline, as in `along: plate.top`, or draw a guide near it: "
-        report_once(it, "E0358", message, it.call_sites[-1], [hint + "`construction way = arc(…)`"])
-        return NOTHING
+        hint += "`construction way = arc(…)`"
+        return it.report("E0358", message, place, hints=[hint], once=True)
     if not (glyphs := typeset(it, a)):
         return NOTHING
     share = 0.5 if way.is_closed else ALIGNMENTS[certain(a["align"], TextVal).value]
@@ -485,11 +462,9 @@ def lettered(it: Interpreter, a: Arguments, node: ast.Call, env: Env) -> Value:
     extent = max(glyph.box[2] for glyph in glyphs) - min(glyph.box[0] for glyph in glyphs)
     assert height is not None
     fits = Comparison("<=", height * extent, way.length, LENGTH)
-    call = it.call_sites[-1]
-    place = it.place(call) or call.span
-    it.assertions.append(
-        Assertion(env.here, Condition("and", (fits,)), None, place.one_line, place, extent=extent)
-    )
+    said = place or node.span
+    both = Condition("and", (fits,))
+    it.assertions.append(Assertion(env.here, both, None, said.one_line, said, extent=extent))
     whole = env.scope.declaring().container
     if isinstance(whole, Geometry):
         whole.reach = reach

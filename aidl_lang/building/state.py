@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import field
 from enum import Enum
@@ -21,7 +20,18 @@ from aidl_lang.building.model import (
     Literal,
     Structure,
 )
-from aidl_lang.building.values import Exactness, ListVal, Num, PointVal, RecordVal, TextVal, Value, point
+from aidl_lang.building.values import (
+    NOTHING,
+    Exactness,
+    ListVal,
+    Nothing,
+    Num,
+    PointVal,
+    RecordVal,
+    TextVal,
+    Value,
+    point,
+)
 from aidl_lang.checking.rules import TypeMisfit
 from aidl_lang.checking.types import Binding, Signature
 from aidl_lang.checking.units import ANGLE, LENGTH, MaybeDimension
@@ -34,8 +44,8 @@ from aidl_lang.typecheck import Program
 
 if TYPE_CHECKING:
     from aidl_lang.building.attributes import Stated
+    from aidl_lang.building.calls import CallSite
     from aidl_lang.building.copies import Copier
-    from aidl_lang.building.overloads import CallSite
     from aidl_lang.common.lettering import Font
 
 
@@ -294,6 +304,7 @@ class Interpreter:
     clips: dict[Structure, Stated] = field(default_factory=dict)
     """what is said of the outlines that structures are clipped to"""
     written: dict[ast.Node, tuple[float, float] | float] = field(default_factory=dict)
+    """the written values of expressions that break a rule of validity, for their fixes"""
     watched: frozenset[ast.Node] = frozenset()
     used_overrides: set[str] = field(default_factory=set)
     call_sites: list[ast.Node] = field(default_factory=list)
@@ -344,33 +355,36 @@ class Interpreter:
         hints: Sequence[str] = (),
         fix: Fix | None = None,
         secondary: Sequence[Label] = (),
-    ) -> None:
+        *,
+        once: bool = False,
+    ) -> Nothing:
+        """Reports what is found at a node; `once`: not again of the same place, as a loop would. Returns the
+        value of what is wrong. Ends building if there are more errors than are reported.
+        """
         span = self.place(node)
         written = node.span if isinstance(node, ast.Node) else node
         if span is not None and written is not None and span.source is not written.source:
             inner = message if code in ("E0525", "E0604") else f"in the library, {message}"
             message = f"`{span.one_line}` does not work out: {inner}"
-            if any(d.code == code and d.span == span for d in self.diagnostics):
-                return  # the same cause, met again
-        self._add(Diagnostic(code, message, span, label, tuple(secondary), tuple(hints), fix))
-
-    def _add(self, found: Diagnostic) -> None:
-        """Adds a diagnostic; ends building if there are more errors than are reported."""
+            once = True
+        if once and any(d.code == code and d.span == span for d in self.diagnostics):
+            return NOTHING
+        found = Diagnostic(code, message, span, label, tuple(secondary), tuple(hints), fix)
         self.diagnostics.append(found)
         self.errors += found.is_error
         if self.errors > MOST_ERRORS:
             raise Stop
+        return NOTHING
 
-    def misfit(self, found: TypeMisfit, node: ast.Node, fix: Fix | None = None) -> None:
+    def misfit(self, found: TypeMisfit, node: ast.Node, fix: Fix | None = None) -> Nothing:
         """Reports a value that does not fit its place."""
-        self.report(found.code, found.message, node, found.label, found.hints, fix)
+        return self.report(found.code, found.message, node, found.label, found.hints, fix)
 
-    def refuse(self, node: ast.Node, why: str, hints: Sequence[str] = ()) -> None:
+    def refuse(self, node: ast.Node, why: str, hints: Sequence[str] = ()) -> Nothing:
         """Reports that a call makes no sense of its arguments, at the call that the author wrote."""
         span = self.place(node)
         text = f"`{span.one_line}`" if span is not None else "this"
-        if not any(d.code == "E0342" and d.span == span for d in self.diagnostics):
-            self._add(Diagnostic("E0342", f"{text} says nothing: {why}", span, hints=tuple(hints)))
+        return self.report("E0342", f"{text} says nothing: {why}", span, hints=hints, once=True)
 
     def spelled(self, node: ast.Name | ast.Identifier) -> str:
         """Returns the name as it is defined."""
@@ -471,21 +485,15 @@ class Interpreter:
     ) -> ex.Expression:
         """Returns a new unknown as an expression; the structure of its holder owns it if no other does."""
         owner = owner or (holder.owner if isinstance(holder, Geometry) else holder)
-        if not abs(guess) <= _LARGEST_GUESS:
-            guess = self._tamed(guess, holder, name)
+        if abs(guess) > _LARGEST_GUESS:
+            message = f"`{name}` begins at {guess:g} here, which no drawing reaches"
+            hint = f"lengths reach to {_LARGEST_GUESS:g} mm in either direction"
+            self.report("E0504", message, holder.span, hints=[hint])
+            guess = 0.0
         new = Unknown(guess, owner, holder, name, kept, dimension == ANGLE, frame_of, cell, exact=locked)
         new.locked, new.outline, new.since, new.implied = locked, outline, since, since != ""
         self.unknowns.append(new)
         return ex.unknown(new)
-
-    def _tamed(self, guess: float, holder: Holder, name: str) -> float:
-        """Reports a first guess at which the solver could not begin. Returns another."""
-        if math.isnan(guess):
-            return guess
-        message = f"`{name}` begins at {guess:g} here, which no drawing reaches"
-        hint = f"lengths reach to {_LARGEST_GUESS:g} mm in either direction"
-        self.report("E0504", message, holder.span, hints=[hint])
-        return 0.0
 
     def became(
         self, written: Num, made: ex.Expression, holder: Holder, name: str, dimension: MaybeDimension = LENGTH
@@ -503,13 +511,6 @@ class Interpreter:
             self.became(written.x, made.x.expression, holder, f"{name}.x")
         if written.y.expression.op == "constant":
             self.became(written.y, made.y.expression, holder, f"{name}.y")
-
-    def watch(self, node: ast.Node, value: Value) -> None:
-        """Keeps the written value of an expression that breaks a rule of validity, for its fix."""
-        if isinstance(value, Num):
-            self.written[node] = value.value
-        elif isinstance(value, PointVal):
-            self.written[node] = (value.x.value, value.y.value)
 
 
 Arguments = Mapping[str, Value]

@@ -8,13 +8,12 @@ from dataclasses import field, replace
 
 from aidl_lang.building import expression as ex
 from aidl_lang.building.attributes import read_attributes, read_own_attributes
-from aidl_lang.building.calls import declared_names, run_block
 from aidl_lang.building.coerce import as_point, numeric, whole
 from aidl_lang.building.construct import loose_point, refuses_measure
 from aidl_lang.building.copies import Copier
 from aidl_lang.building.curves import STILL, Motion, of_frame
 from aidl_lang.building.edits import GeometryPlacement, check_edit, edited, edits_on, is_edit
-from aidl_lang.building.evaluate import evaluate, truth, turns
+from aidl_lang.building.evaluate import declared_names, evaluate, run_block, truth, turns
 from aidl_lang.building.impose import record_assertion
 from aidl_lang.building.members import read_param
 from aidl_lang.building.model import Frame, Geometry, Holder, Structure, chain
@@ -59,23 +58,19 @@ def declare(
 ) -> None:
     """Gives a value a name in the structure or shape whose body this is."""
     target = env.scope.declaring()
+    before = target.values.get(name.text)
     if name in it.program.rejected:
         return
     if not indices:
-        if (
-            env.scope.turn
-            and name.text in target.values
-            and not isinstance(target.values[name.text], LetBinding)
-        ):
+        if env.scope.turn and before is not None and not isinstance(before, LetBinding):
             message = f"`{name.text}` is declared in every turn of the loop"
             hint = f"give it an index: `{name.text}[i] = …`"
             it.report("E0208", message, name, label="the same name again", hints=[hint])
             return
         target.values[name.text] = value
     else:
-        array = target.values.get(name.text)
-        if not isinstance(array, Array):
-            array = target.values[name.text] = Array(name.text)
+        array = before if isinstance(before, Array) else Array(name.text)
+        target.values[name.text] = array
         if indices in array.members and not isinstance(value, Nothing):
             shown = indexed(name.text, indices)
             it.report("E0208", f"`{shown}` is declared twice", name, hints=["use another index"])
@@ -157,7 +152,6 @@ class Assignment:
                 return value
 
     def _stands(self, value: StructureCopy | Pattern) -> None:
-        """Reports an `at` of a thing whose place follows from something else."""
         name, fix = self.node.name.text, None
         if isinstance(value, Pattern):
             message, hint = f"the place of `{name}` is that of its members", "give it a `center` or a `start`"
@@ -207,8 +201,7 @@ class Assignment:
         if not (motion.scale.is_constant and motion.scale.value == 1.0):
             message = f"`{template.signature.name}` makes a structure of the sizes that it is given"
             hint = "pass it other sizes, or name the structure first and scale a copy of it"
-            self.it.report("E0334", message, copy.node, hints=[hint])
-            return NOTHING
+            return self.it.report("E0334", message, copy.node, hints=[hint])
         own: list[Frame] = []
 
         def framed(frame: Frame) -> Frame:
@@ -232,8 +225,7 @@ class Assignment:
             why = f"`{follower.path}` is made of geometry of `{follower.bound_to.path}`"
             message = f"`{source.name}` cannot be copied alone: {why}"
             hint = f"copy `{follower.bound_to.name}` with all that it holds"
-            self.it.report("E0331", message, self.node.value, hints=[hint])
-            return NOTHING
+            return self.it.report("E0331", message, self.node.value, hints=[hint])
         scale = motion.scale
         inside = STILL if scale.is_constant and scale.value == 1.0 else replace(STILL, scale=scale)
         copier = Copier(self.it, None, inside, span=self.node.span)

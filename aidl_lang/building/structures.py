@@ -6,14 +6,15 @@ import re
 from collections.abc import Callable, Mapping
 from functools import cache
 from pathlib import PurePath
+from typing import Any
 
 from aidl_lang.building import expression as ex
 from aidl_lang.building.attributes import read_attributes, settle_clips_in, settle_order
-from aidl_lang.building.calls import default_of, hoist_callables, hoist_values, run_block
+from aidl_lang.building.calls import default_of
 from aidl_lang.building.coerce import as_point, numeric
 from aidl_lang.building.construct import hidden_constraints, loose_place, solvable
 from aidl_lang.building.edits import Edits, edits_on, frame_edited
-from aidl_lang.building.evaluate import evaluate
+from aidl_lang.building.evaluate import evaluate, hoist_callables, hoist_values, run_block
 from aidl_lang.building.impose import read_constraint
 from aidl_lang.building.members import passed, read_param, report_unused
 from aidl_lang.building.model import Frame, Structure
@@ -54,7 +55,6 @@ from aidl_lang.syntax import ast
 
 # --- Ready-made cuts that are written in a hole: there they are circles, without depth or thread.
 
-_CODE = "W0504"
 _LOST = {
     "depth": "nothing is sunk, and all of it is cut through",
     "thread": "no drawing sheet tells of its thread",
@@ -89,7 +89,7 @@ def _tell(
 ) -> None:
     stated = (node.name.text for node in ast.walk(placed) if isinstance(node, ast.Attribute))
     said = next((name for name in stated if name in _LOST), None)
-    if said is None or any(d.code == _CODE and d.span == call.span for d in it.diagnostics):
+    if said is None:
         return
     name = hole.name.text
     hints = (
@@ -97,7 +97,7 @@ def _tell(
         f"or say it of this hole: `@{said}(…) hole {name} {{ … }}`",
     )
     message = f"in a `hole`, `{call.callee.text}` is a bare circle: {_LOST[said]}"
-    it.report(_CODE, message, call, hints=hints, fix=fix)
+    it.report("W0504", message, call, hints=hints, fix=fix, once=True)
 
 
 def _fix(hole: ast.Structure, statement: ast.Assign, placed: ast.Structure) -> Fix | None:
@@ -333,19 +333,15 @@ def _bring_in(scope: Scope, inner: Scope, statement: ast.Import, *, is_drawing: 
             scope.callables[statement.alias.text] = inner.callables[WHOLE]
         return
     wanted = {name.text for name in statement.names}
-
-    def is_wanted(name: str) -> bool:
-        return not wanted or name in wanted
-
-    for name, binding in inner.values.items():
-        if is_wanted(name):
-            scope.values.setdefault(name, binding)
-    for name, candidates in inner.callables.items():
-        if is_wanted(name):
-            scope.callables.setdefault(name, candidates)
-    for name, target in inner.aliases.items():
-        if is_wanted(name):
-            scope.aliases.setdefault(name, target)
+    tables: list[tuple[dict[str, Any], dict[str, Any]]] = [
+        (scope.values, inner.values),
+        (scope.callables, inner.callables),
+        (scope.aliases, inner.aliases),
+    ]
+    for own, other in tables:
+        for name, meaning in other.items():
+            if not wanted or name in wanted:
+                own.setdefault(name, meaning)
 
 
 def _library_scope(library: Library) -> Scope:

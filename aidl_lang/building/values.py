@@ -214,13 +214,13 @@ class StructureCopy:
     is_laid: bool = False
 
 
+@record(eq=False)
 class Namespace:
     """The names that `import "p" as name` brings."""
 
     value_type = ModuleType()
 
-    def __init__(self, values: Mapping[str, object]) -> None:
-        self.values = values
+    values: Mapping[str, object]
 
 
 NOTHING = Nothing()

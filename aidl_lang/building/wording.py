@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
-from typing import TypeAlias
+from typing import TypeAlias, TypeVar
 
 from aidl_lang.building import expression as ex
 from aidl_lang.building.boxes import box_of, boxes_in, source_unknowns, spelled_out
@@ -41,6 +41,7 @@ from aidl_lang.syntax import ast
 
 # --- Conditions: comparing values, joining comparisons, and testing whether a condition holds.
 
+T = TypeVar("T")
 Evaluate = Callable[[Expression], float]
 
 RELATIONS = ("==", "<=", ">=", "<", ">")
@@ -65,8 +66,7 @@ def compare(
 
     def incomparable() -> Nothing:
         texts = map(shown, sides)
-        it.misfit(rules.no_comparison(relation, type_of(left), type_of(right), *texts), node)
-        return NOTHING
+        return it.misfit(rules.no_comparison(relation, type_of(left), type_of(right), *texts), node)
 
     if isinstance(left, Nothing) or isinstance(right, Nothing):
         return NOTHING
@@ -106,7 +106,6 @@ def _one_by_one(relation: str, left: Value, right: Value) -> list[tuple[Value, V
 
 
 def _is_pair(values: Sequence[Value]) -> bool:
-    """Tells whether the members of a list may be the coordinates of a point."""
     return len(values) == 2 and all(isinstance(value, Num) for value in values)
 
 
@@ -116,8 +115,7 @@ def _is_point(value: Value) -> bool:
 
 def _compare_points(it: Interpreter, relation: str, a: PointVal, b: PointVal, node: ast.Node) -> Value:
     if relation not in ("==", "!="):
-        it.misfit(rules.no_order(relation), node)
-        return NOTHING
+        return it.misfit(rules.no_order(relation), node)
     both = conjunction(
         it, "and", compare_numbers(it, "==", a.x, b.x, node), compare_numbers(it, "==", a.y, b.y, node), node
     )
@@ -128,8 +126,7 @@ def compare_numbers(it: Interpreter, relation: str, a: Num, b: Num, node: ast.No
     try:
         dimension = units.add(a.dimension, b.dimension)
     except units.UnequalError as pair:
-        it.misfit(rules.unequal(f"`{relation}` does not compare", *pair.args), node)
-        return NOTHING
+        return it.misfit(rules.unequal(f"`{relation}` does not compare", *pair.args), node)
     left, right = spelled_out(a.expression, b.expression, equal=relation == "==", whole=it.whole_boxes)
     if left.is_constant and right.is_constant:
         return _relates(relation, left.value, right.value, dimension == ANGLE, EXACT, strict=True)
@@ -137,9 +134,13 @@ def compare_numbers(it: Interpreter, relation: str, a: Num, b: Num, node: ast.No
     return Condition("and", (Comparison(relation, left, right, dimension, None, boxes, beside),))
 
 
-def _relates(
-    relation: str, a: float, b: float, is_angle: bool, tolerance: float, *, strict: bool = False
-) -> bool:
+def equated(it: Interpreter, pairs: Iterable[tuple[Num, Num]], node: ast.Node) -> tuple[Comparison, ...]:
+    """Returns the comparisons that hold numbers equal, pair by pair; none for constants."""
+    conditions = (compare_numbers(it, "==", a, b, node) for a, b in pairs)
+    return tuple(c for made in conditions if isinstance(made, Condition) for c in made.comparisons())
+
+
+def _relates(relation: str, a: float, b: float, is_angle: bool, tolerance: float, *, strict: bool) -> bool:
     """Tells whether a relation holds within a tolerance; if `strict`, `<` and `>` do not hold for equals."""
     difference = a - b
     if is_angle and relation in ("==", "!="):
@@ -158,8 +159,7 @@ def conjunction(it: Interpreter, operator: str, left: Value, right: Value, node:
         return NOTHING
     for side in (left, right):
         if not isinstance(side, bool | Condition):
-            it.misfit(rules.needed("a condition", type_of(side)), node)
-            return NOTHING
+            return it.misfit(rules.needed("a condition", type_of(side)), node)
     neutral = operator == "and"
     if left is neutral:
         return right
@@ -182,8 +182,7 @@ def negation(it: Interpreter, value: Value, node: ast.Node) -> Value:
         case Nothing():
             return NOTHING
         case _:
-            it.misfit(rules.needed("a condition", type_of(value)), node)
-            return NOTHING
+            return it.misfit(rules.needed("a condition", type_of(value)), node)
 
 
 def all_of(parts: Iterable[Value]) -> Value:
@@ -221,16 +220,12 @@ def holds(condition: Part, evaluate: Evaluate, tolerance: float, *, strict: bool
 Parties: TypeAlias = tuple[frozenset[Unknown], ...]
 
 
-def placed_by(comparison: Comparison, placed: frozenset[Unknown], parties: Parties = ()) -> Comparison:
-    return replace(comparison, moved=placed, parties=parties)
-
-
 def replace_placed(condition: Condition, placed: frozenset[Unknown], parties: Parties = ()) -> Condition:
     """Returns the same condition, with other unknowns moving first."""
     parts: list[Part] = []
     for part in condition.parts:
         if isinstance(part, Comparison):
-            part = placed_by(part, placed, parties)
+            part = replace(part, moved=placed, parties=parties)
         parts.append(replace_placed(part, placed, parties) if isinstance(part, Condition) else part)
     return Condition(condition.operator, tuple(parts))
 
@@ -247,49 +242,47 @@ def value_unknowns(value: Value, here: Structure) -> Iterator[Unknown]:
 
 # --- A statement that constrains, kept so that it can be read again, part by part, at its place.
 
-Read = Callable[[Interpreter, ast.Expression, Env], Value]
-"""Evaluates a statement in an environment."""
-
 
 @record(eq=False)
 class Wording:
-    """A statement that can be read again: `node` as it was written; `read` evaluates it, or a part of it."""
+    """A statement that can be read again: `node` as it was written, or a part of it."""
 
     node: ast.Expression
     it: Interpreter
     env: Env
-    read: Read
 
     def held(self) -> Iterator[str]:
         """Yields the texts of parts of the statement that no solving moves."""
-        stack: list[ast.Node] = [self.node]
-        while stack:
-            node = stack.pop()
-            if isinstance(node, ast.Name | ast.Member | ast.Index) and _is_exact(self.value(node)):
-                yield node.span.text
-            else:
-                stack.extend(reversed(list(ast.children(node))))
+        return self._of_names(lambda node, value: [node.span.text] if _is_exact(value) else [])
 
     def named(self) -> Iterator[Geometry | Structure]:
         """Yields the geometry and structures that the statement mentions, as far as each name in it leads."""
+
+        def things(node: ast.Node, value: Value | None) -> list[Geometry | Structure]:
+            values = () if value is None else (value, *(members(value) or ()))
+            return [v for v in values if isinstance(v, Geometry | Structure)]
+
+        return self._of_names(things)
+
+    def _of_names(self, found_in: Callable[[ast.Node, Value | None], list[T]]) -> Iterator[T]:
+        """Yields what is found in the longest names of the statement that have something."""
         stack: list[ast.Node] = [self.node]
         while stack:
             node = stack.pop()
-            if isinstance(node, ast.Name | ast.Member | ast.Index):
-                value = self.value(node)
-                values = () if value is None else (value, *(members(value) or ()))
-                found = [v for v in values if isinstance(v, Geometry | Structure)]
-                yield from found
-                if found:
-                    continue
-            stack.extend(reversed(list(ast.children(node))))
+            found = (
+                found_in(node, self.value(node))
+                if isinstance(node, ast.Name | ast.Member | ast.Index)
+                else []
+            )
+            yield from found
+            stack.extend([] if found else reversed(list(ast.children(node))))
 
     def value(self, node: ast.Expression) -> Value | None:
         """Returns the value of a part of the statement at its place; None if that takes too long."""
         it = self.it
         try:
             with limited_to(it.limits.seconds):
-                return self.read(it, node, self.env)
+                return it.evaluate(node, self.env)
         except Stop:
             return None
 

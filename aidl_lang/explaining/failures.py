@@ -41,12 +41,12 @@ _SHOWN = 12  # the most places shown beside the one that a message is about
 _QUOTED = 60  # the most characters of a constraint that a headline quotes
 
 
-def explained(lowered: Lowered, solution: Solution, trials: Trials) -> list[Explanation]:
+def explained(trials: Trials) -> list[Explanation]:
     """Returns an explanation of each group that failed by itself; `trials` tries remedies once asked."""
-    own = [f for f in solution.failures if not _follows(f, solution.failures, lowered.groups)]
-    found: list[Explanation] = []
-    for failure in own:
-        found.append(Explanation(lowered, solution, failure, trials, tuple(found)))
+    failures, found = trials.solution.failures, list[Explanation]()
+    for failure in failures:
+        if not _follows(failure, failures, trials.lowered.groups):
+            found.append(Explanation(failure, trials, tuple(found)))
     return found
 
 
@@ -103,19 +103,17 @@ class _StatedMember:
     stated: Constraint
 
 
+@record(frozen=False, eq=False)
 class Explanation:
     """Why a group could not be solved, and remedies, which may be those of an `earlier` explanation."""
 
-    def __init__(
-        self,
-        lowered: Lowered,
-        solution: Solution,
-        failure: GroupFailure,
-        trials: Trials,
-        earlier: tuple[Explanation, ...],
-    ) -> None:
-        self.lowered, self.solution, self.failure, self.trials = lowered, solution, failure, trials
-        self.earlier = earlier
+    failure: GroupFailure
+    trials: Trials
+    earlier: tuple[Explanation, ...]
+
+    def __post_init__(self) -> None:
+        failure, lowered = self.failure, self.trials.lowered
+        self.lowered, self.solution = lowered, self.trials.solution
         self.is_proven = failure.reason in _PROVEN
         self.times = Counter(c.span for c in lowered.stated if c is not None)
         self.sizes = [self._size(i) for i in failure.conflict if lowered.stated[i] is None]
@@ -304,7 +302,6 @@ class Explanation:
 
     @cached_property
     def _others(self) -> list[set[Span]]:
-        """The places at which the constraints of each other failure are stated."""
         others = [f for f in self.solution.failures if f is not self.failure]
         return [{c.span for i in f.conflict if (c := self.lowered.stated[i]) is not None} for f in others]
 
@@ -431,7 +428,6 @@ def _apart(party: _StatedMember, gap: float) -> tuple[str, ...]:
 
 
 def _name(parties: Sequence[_StatedMember]) -> str:
-    """Returns the name of the parties stated at one place: a loop states several."""
     first, label = f"`{shortened(parties[0].stated.text, _QUOTED)}`", parties[0].stated.label
     if len(parties) > 1:
         return f"{first} ({len(parties)} times)"
@@ -542,10 +538,9 @@ def _troubled(lowered: Lowered, solution: Solution) -> Collection[int]:
     return found
 
 
-def elsewhere_notes(
-    model: Model, lowered: Lowered, solution: Solution, other: Rereading | None, trials: Trials
-) -> Iterator[Diagnostic]:
+def elsewhere_notes(model: Model, other: Rereading | None, trials: Trials) -> Iterator[Diagnostic]:
     """Yields notes, with fitting first guesses, on calls read differently and on places found far off."""
+    lowered, solution = trials.lowered, trials.solution
     if solution.status is not Status.SOLVED:
         return
     if other is not None:
@@ -556,7 +551,7 @@ def elsewhere_notes(
         message = f"{names} {are} not taken as the first guesses have it, for which no position was found"
         (first, label), *others = other.calls
         labels = tuple(Label(span, text) for span, text in others)
-        fix = _guesses(model, lowered, solution, moved, trials)
+        fix = _guesses(model, moved, trials)
         yield Diagnostic("N0604", message, first, label, labels, (_LOOK,), fix)
     for stage in solution.stages:
         despite = [c for i in stage.despite if (c := lowered.stated[i]) is not None]
@@ -566,14 +561,13 @@ def elsewhere_notes(
             first, *rest = dict.fromkeys(c.span for c in despite)
             message = f"near the first guesses no position was found in which {names} {hold}; another one was"
             labels = tuple(Label(span, "takes part") for span in rest)
-            fix = _guesses(model, lowered, solution, despite, trials)
+            fix = _guesses(model, despite, trials)
             yield Diagnostic("N0604", message, first, "holds elsewhere", labels, (_LOOK,), fix)
 
 
-def _guesses(
-    model: Model, lowered: Lowered, solution: Solution, stated: Sequence[Constraint], trials: Trials
-) -> Fix | None:
+def _guesses(model: Model, stated: Sequence[Constraint], trials: Trials) -> Fix | None:
     """Returns a fix that writes first guesses from which the program solves as written; or None."""
+    lowered, solution = trials.lowered, trials.solution
     places = dict(zip(lowered.unknowns, solution.values.tolist(), strict=True))
     was = dict(zip(lowered.unknowns, lowered.problem.initial.tolist(), strict=True))
     mentioned = set(unknowns(e for c in stated for part in c.comparisons for e in (part.left, part.right)))

@@ -173,22 +173,16 @@ def _of_frame(structure: Structure, unknowns: Sequence[Unknown], given: GaveWay)
             by.append(f"turned by {short(way['rotation'])}°")
         what = f"`{structure.path}` moved against `{parent.path}`: {' and '.join(by)}"
     if _is_named(structure, given) and all(u.frame_of is None for u in unknowns):
-        why, hint = (
-            "as it fits nowhere as a whole",
-            "where constraints name one thing of a structure it moves as a whole if it can: write what shall "
-            "give way in it as a `guess(…)`",
-        )
+        why, moves = "as it fits nowhere as a whole", "it moves as a whole if it can"
+        gives = "write what shall give way in it as a `guess(…)`"
+        hint = f"where constraints name one thing of a structure {moves}: {gives}"
     elif _is_named(structure, given):
-        why, hint = (
-            "something in it is exact, as `fixed(…)`, a `param` or `origin` makes it",
-            "`fixed(…)` is exact in its own frame, which may move: "
-            f"`{structure.name} at fixed((0, 0))` holds that as well",
-        )
+        why = "something in it is exact, as `fixed(…)`, a `param` or `origin` makes it"
+        frame = f"`{structure.name} at fixed((0, 0))`"
+        hint = f"`fixed(…)` is exact in its own frame, which may move: {frame} holds that as well"
     else:
-        why, hint = (
-            "though no constraint names it",
-            f"name `{structure.name}` in the constraint that is to move it, or hold it by `at fixed(…)`",
-        )
+        why = "though no constraint names it"
+        hint = f"name `{structure.name}` in the constraint that is to move it, or hold it by `at fixed(…)`"
     return _told("W0602", f"{what}, {why}", structure.span, given, (), (*_whose(given), hint))
 
 

@@ -6,15 +6,15 @@ import math
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
-from functools import cached_property, partial
+from functools import partial
 from typing import TYPE_CHECKING
 
 from aidl_lang.building import expression as ex
 from aidl_lang.building.attributes import FILLING, OF_AREAS
 from aidl_lang.building.curves import clockwise, number, pieces, translate, xy
-from aidl_lang.building.expression import DEGREE, Evaluator, Unknown
-from aidl_lang.building.lower import FLOATS, Lowered, Placing
-from aidl_lang.building.model import Finish, Geometry, Model, Structure, own_geometry
+from aidl_lang.building.expression import DEGREE, Evaluator, Place, Unknown
+from aidl_lang.building.lower import Lowered
+from aidl_lang.building.model import Finish, Geometry, Model, Structure, convert, own_geometry
 from aidl_lang.building.state import NameBinding, ParamBinding, PassedBinding, Scope, VarBinding
 from aidl_lang.building.values import Num, PointVal, TextVal, Value
 from aidl_lang.checking.units import PLAIN
@@ -170,10 +170,10 @@ class _Reader:
     model: Model
     evaluate: Evaluator
 
-    @cached_property
-    def place(self) -> Placing[float]:
-        """Converts points to the frame of the root."""
-        return Placing(self.evaluate, FLOATS)
+    def place(self, at: Place, owner: Structure) -> Vec:
+        """Returns a point of `owner` in the frame of the root."""
+        x, y = convert(at, owner, self.model.root)
+        return self.evaluate(x), self.evaluate(y)
 
     def structure(self, s: Structure) -> SolvedStructure:
         geometry = tuple(map(self._named, s.own()))
@@ -259,8 +259,8 @@ class _Reader:
         corners: list[Bounds] = []
         if s.plan:
             left, bottom, width, height = s.plan
-            for corner in ((left, bottom), (left + width, bottom + height)):
-                x, y = self.place(self.evaluate(corner[0]), self.evaluate(corner[1]), s)
+            for corner in (Place(left, bottom), Place(left + width, bottom + height)):
+                x, y = self.place(corner, s)
                 corners.append((x, y, x, y))
         return solved.Box.around((curve for g in geometry for curve in g.curves()), children, corners)
 
@@ -347,9 +347,7 @@ class _Reader:
         return self._solved(g, {"start": start, "unit": unit, "angle": math.degrees(turn)}, shapes)
 
     def _at(self, value: Value, owner: Structure) -> Vec:
-        """Returns a point of `owner` in the frame of the root."""
-        x, y = xy(value)
-        return self.place(self.evaluate(x), self.evaluate(y), owner)
+        return self.place(xy(value), owner)
 
     def _direction(self, g: Geometry) -> float:
         return self._number(translate("angle", g.fields["angle"], g.owner, self.model.root))
@@ -394,7 +392,7 @@ class _Reader:
     def _pieces(self, g: Geometry) -> Iterator[list[Vec]]:
         """Yields the ends of the lines and the control points of the cubics that a primitive is made of."""
         for piece in pieces(g, g.owner):
-            yield [self.place(self.evaluate(x), self.evaluate(y), g.owner) for x, y in piece]
+            yield [self.place(at, g.owner) for at in piece]
 
     def _arc(self, g: Geometry) -> Curve:
         center, start, end = (self._at(g.fields[n], g.owner) for n in ("center", "start", "end"))
