@@ -9,7 +9,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterable, Iterator, Mapping
 
-from aidl_lang.tools.highlighting.classes import called, fixed_classes
+from aidl_lang.tools.highlighting import called, fixed_classes
 from aidl_lang.tools.vocabulary import vocabulary
 
 FOLDER = "editors/tree-sitter-aidl/queries"
