@@ -7,7 +7,7 @@ import re
 
 from aidl_dev.highlighting.scopes import SCOPES
 from aidl_dev.highlighting.site import write
-from aidl_lang.tools.highlighting.classes import CLASSES
+from aidl_lang.tools.highlighting import CLASSES
 from aidl_lang.tools.vocabulary import vocabulary
 from tests.documents import ROOT
 

@@ -16,7 +16,7 @@ from aidl_dev.highlighting.tree_sitter import queries
 from aidl_lang.common.source import SourceFile
 from aidl_lang.parser import parse as read
 from aidl_lang.syntax import ast
-from aidl_lang.tools.highlighting.classes import classify
+from aidl_lang.tools.highlighting import classify
 from tests.documents import ROOT
 from tests.editors.trees import FOLDER, language, nodes, parse
 

@@ -10,8 +10,7 @@ from aidl_lang.tools.ide.references import CannotError
 from aidl_lang.tools.ide.workspace import View, applied, look, run
 from tests.amount import TRIES_ALL
 from tests.documents import ROOT
-
-from .conftest import cursor, opened, seen, solved_at
+from tests.ide.conftest import cursor, opened, seen, solved_at
 
 
 def offered(marked: str) -> tuple[View, list[Action]]:

@@ -8,18 +8,16 @@ from pathlib import Path
 
 import pytest
 
-from aidl_dev.reference.coverage import cells
 from aidl_lang.common.diagnostics import has_errors
 from aidl_lang.common.source import SourceFile
 from aidl_lang.parser import parse
 from aidl_lang.syntax.tables import tokenize
 from aidl_lang.tools.ide.completion import MOST, Completion, complete
 from aidl_lang.tools.ide.completion.names import forms
-from aidl_lang.tools.ide.workspace import Workspace, look
+from aidl_lang.tools.ide.workspace import Workspace, applied, look
 from aidl_lang.tools.vocabulary import vocabulary
 from tests.compiled import FEW
-
-from .conftest import cursor, seen
+from tests.ide.conftest import cursor, seen
 
 THINGS = """\
 import "parts.aidl" as parts
@@ -197,11 +195,12 @@ drawing d {
     assert mine.text == "beside_it(${1:c}, ${2:l}, by: ${3:by})"
 
 
-@pytest.mark.parametrize("name", ["parallel", "midpoint"])
-def test_the_table_of_what_fits_is_that_of_the_compiler(name: str) -> None:
-    works = {(c.form.format(name=name), c.first, c.second) for c in cells(name) if c.outcome == "works"}
-    told = {(form.text, a, b) for form in forms()[name] for a, b in form.pairs}
-    assert told == works
+def test_what_fits_is_read_off_the_table_of_the_reference() -> None:
+    (above,), (inside,) = forms()["above"], forms()["inside"]
+    assert (above.text, len(above.pairs)) == ("above(a, b)", 100)  # any two of eleven kinds, but no number
+    assert not any("number" in pair for pair in above.pairs)
+    assert {("point", "line"), ("list", "list")} <= inside.pairs
+    assert not {("point", "point"), ("line", "point"), ("point", "number")} & inside.pairs
 
 
 # --- Arguments, words, units -----------------------------------------------------------------------
@@ -300,9 +299,7 @@ def test_what_other_files_define_comes_with_its_import() -> None:
     view = seen(text, parts=PARTS)
     listed = complete(view, offset, lambda: [folder / "parts.aidl", Path("/elsewhere/o.aidl")])
     rivet = next(c for c in listed if c.label == "rivet")
-    (edit,) = rivet.extra
-    made = put(text, rivet)
-    made = made[: edit.span.start] + edit.replacement + made[edit.span.end :]
+    made = applied(put(text, rivet), rivet.extra)
     assert 'import rivet from "parts.aidl"' in made
     assert not has_errors(seen(made, parts=PARTS).found)
     assert "A rivet of a size." in rivet.documentation

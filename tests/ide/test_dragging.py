@@ -124,7 +124,7 @@ def test_a_drawing_that_may_slide_is_moved_as_a_whole_by_its_middle() -> None:
     assert dropped(view, dragged(view, "r.center", (7, 3))).source.text == text.replace("(0, 0)", "(7, 3)")
 
 
-@pytest.mark.parametrize("name", ["key", "bottle_opener", "hanger"])
+@pytest.mark.parametrize("name", ["key", "bottle_opener"])
 def test_a_point_that_nothing_holds_elsewhere_is_not_offered(name: str) -> None:
     path = next(path for path in EXAMPLES if path.stem == name)
     view = solved_at(path)

@@ -14,8 +14,7 @@ from aidl_lang.tools.ide.signatures import signature_help
 from aidl_lang.tools.ide.workspace import View, Workspace, look, run
 from tests.compiled import FEW
 from tests.fuzz.sources import mutant
-
-from .conftest import seen
+from tests.ide.conftest import seen
 
 
 def _ask(view: View, offset: int, files: Callable[[], list[Path]]) -> None:

@@ -12,8 +12,7 @@ from aidl_lang.tools.ide.hover import hover
 from aidl_lang.tools.ide.workspace import View, look, run
 from aidl_lang.tools.reference.collect import reference
 from tests.compiled import LIGHTER
-
-from .conftest import cursor, seen, solved_at
+from tests.ide.conftest import cursor, seen, solved_at
 
 PLATE = """\
 /// A plate with a bolt.

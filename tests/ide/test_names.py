@@ -20,11 +20,10 @@ from aidl_lang.tools.ide.references import (
     rename,
     renameable,
 )
-from aidl_lang.tools.ide.workspace import Project, View, Workspace
+from aidl_lang.tools.ide.workspace import Project, View, Workspace, applied
 from tests.compiled import FEW
 from tests.documents import ROOT
-
-from .conftest import opened
+from tests.ide.conftest import opened
 
 FOLDER = Path("/project")
 
@@ -120,11 +119,7 @@ def test_renaming_a_param_of_three_files_changes_those_places_and_no_picture() -
     project = opened(FILES)
     view = view_in(project, "plate.aidl")
     renaming = rename(project, view, at(view, "body =", "clearance"), "play")
-    changed = dict(FILES)
-    for path, edits in renaming.items():
-        for edit in sorted(edits, key=lambda e: -e.span.start):
-            text = changed[path.name]
-            changed[path.name] = text[: edit.span.start] + edit.replacement + text[edit.span.end :]
+    changed = FILES | {path.name: applied(FILES[path.name], edits) for path, edits in renaming.items()}
     assert changed == {
         "holes.aidl": HOLES.replace("clearance", "play"),
         "plate.aidl": PLATE.replace("clearance", "play"),
@@ -263,10 +258,8 @@ def test_each_param_of_an_example_can_be_renamed(examples: Project, path: Path) 
     for param in params[:2]:
         renaming = rename(project, view, param.name.span.start, "another_name")
         assert set(renaming) == {path}
-        text = view.source.text
-        for edit in sorted(renaming[path], key=lambda e: -e.span.start):
-            assert edit.span.text == param.name.text
-            text = text[: edit.span.start] + edit.replacement + text[edit.span.end :]
+        assert {edit.span.text for edit in renaming[path]} == {param.name.text}
+        text = applied(view.source.text, renaming[path])
         before = pipeline.check(view.source, view.world)
         after = pipeline.check(SourceFile(path.name, text), view.world)
         assert [d.code for d in before] == [d.code for d in after]

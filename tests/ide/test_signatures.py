@@ -5,8 +5,7 @@ from __future__ import annotations
 import pytest
 
 from aidl_lang.tools.ide.signatures import SignatureHelp, signature_help
-
-from .conftest import cursor, seen
+from tests.ide.conftest import cursor, seen
 
 TEXT = """\
 /// Twice, and a little more, `more` being how much.

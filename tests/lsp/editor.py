@@ -141,6 +141,12 @@ class Editor(LanguageClient):
             lambda: next((p for p in self.pictures if p["uri"] == uri and p["version"] == version), None)
         )
 
+    async def query(self, method: str, where: str | dict[str, Any], **params: Any) -> Any:
+        """A question about a text, or about a place in it (see `at`)."""
+        where = where if isinstance(where, dict) else {"text_document": self.document(where)}
+        made = types.METHOD_TO_TYPES[f"textDocument/{method}"][2](**where, **params)
+        return await self.protocol.send_request_async(f"textDocument/{method}", made)
+
     async def ask(self, method: str, **params: Any) -> Any:
         """A request of our own."""
         async with asyncio.timeout(SECONDS):
@@ -149,12 +155,10 @@ class Editor(LanguageClient):
     def document(self, uri: str) -> types.TextDocumentIdentifier:
         return types.TextDocumentIdentifier(uri)
 
-    def at(self, uri: str, text: str, inside: int = 0, nth: int = 0) -> dict[str, Any]:
-        """Document and position of the nth place where something stands, some characters further on."""
-        start = -1
-        for _ in range(nth + 1):
-            start = self.texts[uri].index(text, start + 1)
-        return {"text_document": self.document(uri), "position": place(self.texts[uri], start + inside)}
+    def at(self, uri: str, text: str, inside: int = 0) -> dict[str, Any]:
+        """Document and position of the first place where something stands, some characters further on."""
+        offset = self.texts[uri].index(text) + inside
+        return {"text_document": self.document(uri), "position": place(self.texts[uri], offset)}
 
     def apply(self, edit: types.WorkspaceEdit) -> bool:
         """Change the open texts, unless an edit is of another version."""
@@ -167,35 +171,27 @@ class Editor(LanguageClient):
         return True
 
 
-CAPABILITIES = types.ClientCapabilities(
-    general=types.GeneralClientCapabilities(position_encodings=[types.PositionEncodingKind.Utf16]),
-    workspace=types.WorkspaceClientCapabilities(
-        apply_edit=True,
-        configuration=True,
-        workspace_folders=True,
-        workspace_edit=types.WorkspaceEditClientCapabilities(document_changes=True),
-        did_change_watched_files=types.DidChangeWatchedFilesClientCapabilities(dynamic_registration=True),
-        inlay_hint=types.InlayHintWorkspaceClientCapabilities(refresh_support=True),
-        code_lens=types.CodeLensWorkspaceClientCapabilities(refresh_support=True),
-    ),
-    text_document=types.TextDocumentClientCapabilities(
-        completion=types.CompletionClientCapabilities(
-            completion_item=types.ClientCompletionItemOptions(
-                snippet_support=True,
-                documentation_format=[types.MarkupKind.Markdown],
-                resolve_support=types.ClientCompletionItemResolveOptions(["documentation"]),
-            )
-        ),
-        hover=types.HoverClientCapabilities(content_format=[types.MarkupKind.Markdown]),
-        document_symbol=types.DocumentSymbolClientCapabilities(hierarchical_document_symbol_support=True),
-        rename=types.RenameClientCapabilities(prepare_support=True),
-        publish_diagnostics=types.PublishDiagnosticsClientCapabilities(
-            related_information=True, version_support=True, code_description_support=True
-        ),
-        code_action=types.CodeActionClientCapabilities(
-            resolve_support=types.ClientCodeActionResolveOptions(["edit"]), data_support=True
-        ),
-    ),
+CAPABILITIES = converter().structure(
+    {
+        "general": {"positionEncodings": ["utf-16"]},
+        "workspace": {
+            **dict.fromkeys(("applyEdit", "configuration", "workspaceFolders"), True),
+            "workspaceEdit": {"documentChanges": True},
+            "didChangeWatchedFiles": {"dynamicRegistration": True},
+            "inlayHint": {"refreshSupport": True},
+            "codeLens": {"refreshSupport": True},
+        },
+        "textDocument": {
+            "completion": {
+                "completionItem": {"snippetSupport": True, "documentationFormat": ["markdown"]},
+            },
+            "hover": {"contentFormat": ["markdown"]},
+            "documentSymbol": {"hierarchicalDocumentSymbolSupport": True},
+            "rename": {"prepareSupport": True},
+            "codeAction": {"resolveSupport": {"properties": ["edit"]}},
+        },
+    },
+    types.ClientCapabilities,
 )
 
 
@@ -228,12 +224,10 @@ def make() -> Editor:
     return editor
 
 
-async def greet(editor: Editor, *folders: Path, **capabilities: Any) -> types.InitializeResult:
-    return await editor.initialize_session(
-        types.InitializeParams(
-            capabilities=CAPABILITIES,
-            workspace_folders=[types.WorkspaceFolder(folder.as_uri(), folder.name) for folder in folders],
-        )
+async def greet(editor: Editor, folder: Path) -> None:
+    folders = [types.WorkspaceFolder(folder.as_uri(), folder.name)]
+    await editor.initialize_session(
+        types.InitializeParams(capabilities=CAPABILITIES, workspace_folders=folders)
     )
 
 

@@ -12,7 +12,7 @@ from aidl_lang.common.source import SourceFile
 from aidl_lang.common.world import MemoryWorld
 from tests.lsp.editor import Editor
 
-pytestmark = pytest.mark.asyncio(loop_scope="module")
+pytestmark = pytest.mark.asyncio(loop_scope="session")
 
 SIZES = "let pitch = 12\nsolid bolt(size = 2) {\n    body = circle(center: (0, 0), radius: size)\n}\n"
 ONE = 'import bolt from "sizes.aidl"\nassembly one {\n    a = bolt(size: 3)\n}\n'
@@ -100,12 +100,10 @@ async def test_a_missing_import_is_found_when_it_comes(editor: Editor, tmp_path:
 async def test_links_and_definitions_lead_to_other_files(editor: Editor, tmp_path: Path) -> None:
     sizes, one = written(tmp_path, sizes=SIZES, one=ONE)
     uri = editor.open(one)
-    (link,) = await editor.text_document_document_link_async(types.DocumentLinkParams(editor.document(uri)))
+    (link,) = await editor.query("documentLink", uri)
     assert link.target == sizes.as_uri()
     assert (link.range.start.character, link.range.end.character) == (18, 28)
-    (found,) = await editor.text_document_definition_async(
-        types.DefinitionParams(**editor.at(uri, "bolt(size: 3)", inside=2))
-    )
+    (found,) = await editor.query("definition", editor.at(uri, "bolt(size: 3)", 2))
     assert (found.uri, found.range.start.line) == (sizes.as_uri(), 1)
     editor.close(uri)
 
@@ -117,9 +115,7 @@ async def test_renaming_a_parameter_that_three_files_name(editor: Editor, tmp_pa
     for uri in uris:
         await editor.found(uri)
     before = {uri: drawn(editor, uri) for uri in uris[1:]}
-    changes = await editor.text_document_rename_async(
-        types.RenameParams(new_name="thickness", **editor.at(uris[0], "size = 2"))
-    )
+    changes = await editor.query("rename", editor.at(uris[0], "size = 2"), new_name="thickness")
     assert editor.apply(changes)
     for uri, (name, text) in zip(uris, files.items(), strict=True):
         changed = text.replace("radius: size", "radius: thickness")
@@ -141,9 +137,7 @@ async def test_references_in_files_that_are_not_open(editor: Editor, tmp_path: P
     sizes, *_ = written(tmp_path, sizes=SIZES, one=ONE, two=TWO)
     join(editor, tmp_path)
     uri = editor.open(sizes)
-    found = await editor.text_document_references_async(
-        types.ReferenceParams(types.ReferenceContext(False), **editor.at(uri, "bolt("))
-    )
+    found = await editor.query("references", editor.at(uri, "bolt("), context=types.ReferenceContext(False))
     lines = {(Path(each.uri).name, each.range.start.line) for each in found}
     assert lines == {("one.aidl", 0), ("one.aidl", 2), ("two.aidl", 3), ("two.aidl", 4)}
     editor.close(uri)
@@ -170,13 +164,9 @@ async def test_library_files_are_shown_and_not_run(editor: Editor) -> None:
     uri = editor.open(
         "untitled:asks", "solid a { b = trapezoid(center: (0, 0), bottom_width: 9, top_width: 3, height: 4) }"
     )
-    (found,) = await editor.text_document_definition_async(
-        types.DefinitionParams(**editor.at(uri, "trapezoid"))
-    )
+    (found,) = await editor.query("definition", editor.at(uri, "trapezoid"))
     library = editor.open(Path(found.uri.removeprefix("file://")))
-    symbols = await editor.text_document_document_symbol_async(
-        types.DocumentSymbolParams(editor.document(library))
-    )
+    symbols = await editor.query("documentSymbol", library)
     assert "trapezoid" in [each.name for each in symbols]
     assert not [t for t in editor.told if t.uri == library]
     for each in (library, uri):

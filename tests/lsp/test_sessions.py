@@ -48,14 +48,21 @@ class Wire:
             pass
         return message
 
-    def greet(self) -> None:
-        self.send(id=0, method="initialize", params={"processId": None, "rootUri": None, "capabilities": {}})
+    def greet(self, **capabilities: Any) -> None:
+        params = {"processId": None, "rootUri": None, "capabilities": capabilities}
+        self.send(id=0, method="initialize", params=params)
         assert "result" in self.answer(0)
         self.send(method="initialized", params={})
 
     def open(self, text: str, uri: str = "untitled:a") -> None:
         document = {"uri": uri, "languageId": "aidl", "version": 1, "text": text}
         self.send(method="textDocument/didOpen", params={"textDocument": document})
+
+    def diagnostics(self) -> list[dict[str, Any]]:
+        """What is told next."""
+        while (told := self.read()).get("method") != "textDocument/publishDiagnostics":
+            pass
+        return told["params"]["diagnostics"]
 
 
 @pytest.fixture
@@ -96,9 +103,7 @@ def test_rules_are_kept_where_clients_break_them(server: subprocess.Popen[bytes]
     wire.send(method="$/cancelRequest", params={"id": "never"})
     wire.send(id=99, result={"surprise": True})
     wire.open("solid a { b = circle(raduis: 3) }", "http://[not a uri")
-    while (told := wire.read()).get("method") != "textDocument/publishDiagnostics":
-        pass
-    assert [d["code"] for d in told["params"]["diagnostics"]] == ["E0324"]
+    assert [d["code"] for d in wire.diagnostics()] == ["E0324"]
     wire.send(id=10, method="shutdown")
     assert wire.answer(10)["result"] is None
     wire.send(id=11, method="shutdown")
@@ -112,9 +117,7 @@ def test_shutting_down_does_not_wait_for_a_solve(server: subprocess.Popen[bytes]
     wire = Wire(server.stdout, server.stdin)
     wire.greet()
     wire.open(SLOW)
-    # It is being run by the time that what was found without running it is told.
-    while wire.read().get("method") != "textDocument/publishDiagnostics":
-        pass
+    wire.diagnostics()  # of what was found without running it: by now it is being run
     wire.send(id=1, method="aidl/preview", params={"uri": "untitled:a", "show": []})
     wire.send(id=2, method="shutdown")
     assert "result" in wire.answer(2)
@@ -123,20 +126,16 @@ def test_shutting_down_does_not_wait_for_a_solve(server: subprocess.Popen[bytes]
     assert b"Traceback" not in server.stderr.read()
 
 
-@pytest.mark.parametrize("end", ["exit", "end of input"])
-def test_leaving_without_a_word(server: subprocess.Popen[bytes], end: str) -> None:
+def test_leaving_without_a_word(server: subprocess.Popen[bytes]) -> None:
     wire = Wire(server.stdout, server.stdin)
     wire.greet()
     wire.open(SLOW)
-    if end == "exit":
-        wire.send(method="exit")
-    else:
-        server.stdin.close()
+    server.stdin.close()
     assert server.wait(SECONDS) == 1
     assert b"Traceback" not in server.stderr.read()
 
 
-def test_a_client_on_a_socket() -> None:
+def test_a_client_on_a_socket_that_counts_in_bytes() -> None:
     process = subprocess.Popen([*COMMAND, "--tcp", "127.0.0.1:0"], stderr=subprocess.PIPE, env=ENVIRONMENT)
     with process:
         address, _, words = process.stderr.readline().decode().partition(": ")
@@ -145,15 +144,14 @@ def test_a_client_on_a_socket() -> None:
         with socket.create_connection((host, int(port)), SECONDS) as connection:
             stream = connection.makefile("rwb")
             wire = Wire(stream, stream)
-            wire.greet()
-            wire.open("solid a { b = circle(raduis: 3) }")
-            while (told := wire.read()).get("method") != "textDocument/publishDiagnostics":
-                pass
-            assert [d["code"] for d in told["params"]["diagnostics"]] == ["E0324"]
-            wire.send(id=1, method="shutdown")
-            wire.answer(1)
-            wire.send(method="exit")
-            assert process.wait(SECONDS) == 0
+            wire.greet(general={"positionEncodings": ["utf-8"]})
+            text = "solid a { /* 🚀ü */ b = circle(raduis: 3) }"
+            wire.open(text)
+            (wrong,) = wire.diagnostics()
+            character = len(text[: text.index("raduis")].encode())
+            assert wrong["range"]["start"] == {"line": 0, "character": character}
+            wire.send(method="exit")  # without a `shutdown`
+            assert process.wait(SECONDS) == 1
 
 
 def test_an_address_that_cannot_be_served(capsys: pytest.CaptureFixture[str]) -> None:

@@ -6,10 +6,9 @@ from __future__ import annotations
 import pytest
 from lsprotocol import types
 
-from tests.lsp.editor import CAPABILITIES, COMMAND, ENVIRONMENT, EXAMPLES, Editor, make, offset, place
+from tests.lsp.editor import Editor, offset, place
 
-pytestmark = pytest.mark.asyncio(loop_scope="module")
-ROOM = EXAMPLES / "workshop"
+pytestmark = pytest.mark.asyncio(loop_scope="session")
 
 ASTRAL = """\
 /// 𝔸 part: 👩‍🔧 and 🇦🇶
@@ -29,15 +28,13 @@ async def test_places_behind_astral_characters(editor: Editor, end: str) -> None
     assert offset(text, wrong.range.end) == start + len("hight")
 
     places = [i for i in range(len(text)) if text.startswith("𝑏reite", i)]
-    found = await editor.text_document_references_async(
-        types.ReferenceParams(types.ReferenceContext(True), editor.document(uri), place(text, places[1]))
+    found = await editor.query(
+        "references", uri, context=types.ReferenceContext(True), position=place(text, places[1])
     )
     assert [offset(text, each.range.start) for each in found] == places
     assert [offset(text, each.range.end) for each in found] == [i + len("𝑏reite") for i in places]
 
-    changes = await editor.text_document_rename_async(
-        types.RenameParams(editor.document(uri), place(text, places[0] + 1), "w")
-    )
+    changes = await editor.query("rename", uri, position=place(text, places[0] + 1), new_name="w")
     assert editor.apply(changes)
     assert editor.texts[uri] == text.replace("𝑏reite", "w")
     editor.close(uri)
@@ -59,9 +56,7 @@ async def test_edits_between_halves_and_behind_ends(editor: Editor) -> None:
     change(5, 1, 0, 0, "")
     editor.texts[uri], editor.versions[uri] = "//  ok\nsolid a { b = circle(radius: 3) }\n// the end", 5
     assert await editor.found(uri) == []
-    tokens = await editor.text_document_semantic_tokens_full_async(
-        types.SemanticTokensParams(editor.document(uri))
-    )
+    tokens = await editor.query("semanticTokens/full", uri)
     assert list(tokens.data[:5]) == [0, 0, 6, 0, 0]
     assert list(tokens.data[-5:]) == [1, 0, 10, 0, 0]
     editor.close(uri)
@@ -80,29 +75,8 @@ async def test_edits_between_halves_and_behind_ends(editor: Editor) -> None:
 async def test_strange_characters_are_no_trouble(editor: Editor, text: str) -> None:
     uri = editor.open(f"untitled:strange{hash(text)}", text)
     assert await editor.found(uri) == []
-    symbols = await editor.text_document_document_symbol_async(
-        types.DocumentSymbolParams(editor.document(uri))
-    )
+    symbols = await editor.query("documentSymbol", uri)
     assert [each.name for each in symbols] == ["a"]
     line = symbols[0].selection_range.start.line
     assert line == text[: text.index("solid")].count("\n")
     editor.close(uri)
-
-
-async def test_the_unit_of_positions_is_agreed_on() -> None:
-    client = make()
-    await client.start_io(*COMMAND, env=ENVIRONMENT)
-    agreed = types.ClientCapabilities(
-        general=types.GeneralClientCapabilities(position_encodings=[types.PositionEncodingKind.Utf8]),
-        text_document=CAPABILITIES.text_document,
-    )
-    result = await client.initialize_session(
-        types.InitializeParams(capabilities=agreed, root_uri=EXAMPLES.as_uri())
-    )
-    assert result.capabilities.position_encoding == "utf-8"
-    text = "solid a { /* 🚀ü */ b = circle(raduis: 3) }"
-    uri = client.open("untitled:units", text)
-    (wrong,) = await client.found(uri)
-    assert wrong.range.start == types.Position(0, len(text[: text.index("raduis")].encode()))
-    await client.shutdown_session()
-    await client.stop()

@@ -36,6 +36,12 @@ def browser() -> Iterator[Browser]:
         browser.close()
 
 
+@pytest.fixture(autouse=True)
+def _untidied(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Servers in this process look for garbage in all that the tests have loaded, which takes long."""
+    monkeypatch.setattr("gc.collect", lambda *_: 0)
+
+
 @pytest.fixture
 def file(tmp_path: Path) -> Path:
     """The program that hosts without a browser serve."""

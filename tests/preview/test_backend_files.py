@@ -27,8 +27,7 @@ from aidl_lang.tools.preview.host import Host
 from tests.preview.talking import CHANGED, TEXT, serving, talking
 
 
-@pytest.mark.parametrize("mark", [b"", b"\xef\xbb\xbf"])
-@pytest.mark.parametrize("end", ["\n", "\r\n"])
+@pytest.mark.parametrize(("mark", "end"), [(b"", "\n"), (b"\xef\xbb\xbf", "\r\n")])
 def test_an_imported_file_is_edited(file: Path, mark: bytes, end: str) -> None:
     other = file.with_name("other.aidl")
     text = "// 😀\nsolid bolt(n = 1) {\n param d = 6mm in 4..9\n rim = circle(diameter: n * d) }\n"
@@ -54,8 +53,7 @@ def test_what_was_changed_meanwhile_is_not_overwritten(file: Path) -> None:
     assert file.read_text("utf-8") == "// new\n" + TEXT
 
 
-@pytest.mark.parametrize("is_library", [True, False])
-def test_nothing_but_the_program_is_edited(file: Path, is_library: bool) -> None:
+def test_nothing_but_the_program_is_edited(file: Path) -> None:
     def refuse(path: Path, data: bytes) -> None:
         raise AssertionError(path)
 
@@ -67,16 +65,19 @@ def test_nothing_but_the_program_is_edited(file: Path, is_library: bool) -> None
         await document.until_solved(document.serial, 60)
         known = document.ran
         assert known is not None
-        library = known.view.program.library.sources[0]
-        foreign = library if is_library else SourceFile("/etc/passwd", "")
-        asked = host.server.asked_now(document, known), foreign
-        stale = host.server.asked_now(document, replace(known, version=7)), known.view.source
-        tried = ((each, [Edit(Span(source, 0, 0), "x")]) for each, source in (asked, stale))
-        made = [await host._apply(each, edits, "Change") for each, edits in tried]
+        now = host.server.asked_now(document, known)
+        stale = host.server.asked_now(document, replace(known, version=7))
+        tried = (
+            (now, known.view.program.library.sources[0]),
+            (now, SourceFile("/etc/passwd", "")),
+            (stale, known.view.source),
+        )
+        made = [await host._apply(each, [Edit(Span(at, 0, 0), "x")], "Change") for each, at in tried]
         host.close()
         return made
 
-    assert asyncio.run(edited()) == ["this cannot be changed from here", "the text has changed meanwhile"]
+    foreign = "this cannot be changed from here"
+    assert asyncio.run(edited()) == [foreign, foreign, "the text has changed meanwhile"]
 
 
 def test_a_file_that_cannot_be_written_says_so(file: Path) -> None:
@@ -182,7 +183,7 @@ def test_the_dialog_for_exports_comes_from_one_table(file: Path) -> None:
             assert why in refused["error"]["message"]
 
 
-@pytest.mark.parametrize("order", ["aidl/setKnob", "aidl/save", "aidl/undo", "aidl/takeFile", None])
+@pytest.mark.parametrize("order", ["aidl/setKnob", "aidl/undo", None])
 def test_a_slow_file_holds_up_nobody(file: Path, order: str | None, monkeypatch: pytest.MonkeyPatch) -> None:
     """A file that is only read to its end once another page was answered meanwhile: after an order, or after
     it was changed by others.
@@ -212,7 +213,7 @@ def test_a_slow_file_holds_up_nobody(file: Path, order: str | None, monkeypatch:
             answered.set()
         if order is not None:
             assert "error" not in page.answered(number)
-        width = {"aidl/setKnob": 50, "aidl/undo": 60, None: 50}.get(order, 80)
+        width = 60 if order == "aidl/undo" else 50
         while page.preview()["box"][2] != pytest.approx(width / 2):
             pass
 

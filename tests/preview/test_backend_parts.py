@@ -15,7 +15,7 @@ from aidl_lang.tools.ide.preview.elements import Slider, Way, set_knob
 from aidl_lang.tools.ide.workspace import View, Workspace, applied, look, run
 from tests.amount import some
 from tests.compiled import EXAMPLES
-from tests.preview.views import view_of
+from tests.ide.conftest import seen
 
 KNOBS = """
 param width = 160mm in 100..240
@@ -47,7 +47,7 @@ def knob(view: View, path: str) -> Slider:
     ],
 )
 def test_a_value_is_written_and_nothing_else(path: str, value: float | str | bool, written: str) -> None:
-    view = view_of(KNOBS)
+    view = seen(KNOBS, solved=True)
     (edit,) = set_knob(view, path, value)
     text = applied(KNOBS, [edit])
     assert text == re.sub(rf'(param {path} = )(-?[\w.]+|"\w+")', lambda m: m[1] + written, KNOBS)
@@ -73,11 +73,11 @@ def test_a_value_is_written_and_nothing_else(path: str, value: float | str | boo
 )
 def test_what_does_not_fit_is_refused(path: str, value: float | str | bool) -> None:
     with pytest.raises(RefusalError, match=r"\w"):
-        set_knob(view_of(KNOBS), path, value)
+        set_knob(seen(KNOBS, solved=True), path, value)
 
 
 def test_conflicts_name_what_they_relate() -> None:
-    view = view_of(
+    view = seen(
         """
         assembly a {
             solid one { body = rectangle(width: 10, height: 10) }
@@ -85,7 +85,8 @@ def test_conflicts_name_what_they_relate() -> None:
             constrain one.left == two.right + 3
             constrain two.left >= one.right + 1
         }
-        """
+        """,
+        solved=True,
     )
     made = preview(view)
     assert made.status != "solved"
@@ -106,7 +107,7 @@ def test_conflicts_name_what_they_relate() -> None:
 
 def ways(text: str) -> dict[str, list[Way]]:
     """By the path of what moves, joined by spaces."""
-    made = preview(view_of(text), ("freedom",))
+    made = preview(seen(text, solved=True), ("freedom",))
     found: dict[str, list[Way]] = {}
     for way in made.motions:
         found.setdefault(" ".join(made.elements[k].path for k in way.elements), []).append(way)

@@ -12,10 +12,9 @@ from svgelements import Path as SvgPath
 
 from aidl_lang.tools.ide.preview import LAYERS, preview, svg_of
 from aidl_lang.tools.ide.preview.elements import elements
-from aidl_lang.tools.ide.workspace import View
+from aidl_lang.tools.ide.workspace import View, look, run
 from tests.compiled import LIGHTER
-from tests.ide.conftest import solved_at
-from tests.preview.views import view_of
+from tests.ide.conftest import seen, solved_at
 
 SVG = "{http://www.w3.org/2000/svg}"
 
@@ -73,7 +72,7 @@ def test_every_element_that_is_drawn_can_be_pointed_at(example: View) -> None:
 
 
 def test_areas_are_those_of_the_regions() -> None:
-    view = view_of(
+    view = seen(
         """
         assembly a {
             solid plate {
@@ -83,7 +82,8 @@ def test_areas_are_those_of_the_regions() -> None:
             }
             solid far { rim = ellipse(center: (100, 0), rx: 8, ry: 4) }
         }
-        """
+        """,
+        solved=True,
     )
     root = svg(view)
     number = elements(view).number
@@ -102,7 +102,9 @@ def test_areas_are_those_of_the_regions() -> None:
 
 
 def test_library_parts_lead_to_the_call() -> None:
-    view = view_of('solid s { body = rectangle(width: 90, height: 90)\n mount = motor_mount("nema17") }')
+    view = seen(
+        'solid s { body = rectangle(width: 90, height: 90)\n mount = motor_mount("nema17") }', solved=True
+    )
     for element in elements(view).values:
         assert element.span is not None
         if element.path.startswith("s.mount"):
@@ -111,9 +113,9 @@ def test_library_parts_lead_to_the_call() -> None:
 
 def test_a_broken_text_shows_the_last_picture() -> None:
     text = "solid a {\n    body = circle(radius: 5)\n    rim = circle(center: (2, 0), radius: 4)\n}\n"
-    good = view_of(text)
+    good = seen(text, solved=True)
     broken = text.replace("radius: 5", "radius: 5 +")
-    view = view_of(broken, good)
+    view = run(look(good.path, broken, good.world), good)
     made = preview(view)
     assert (made.stale, made.svg, made.motions, made.handles) == (True, preview(good).svg, (), ())
     assert {p.severity for p in made.problems} >= {"error"}
@@ -124,15 +126,17 @@ def test_a_broken_text_shows_the_last_picture() -> None:
     assert rim.text == "rim = circle(center: (2, 0), radius: 4)"
     assert spans["a.body"] is not None
     assert spans["a.body"].text == "body = circle(radius: 5 +)"
-    assert preview(view_of(text, view)).stale is False
+    assert preview(good).stale is False
+    assert preview(seen(text.replace("}", "assert body.radius < 3 }"), solved=True)).status == "wrong"
 
 
 def test_hostile_texts_stay_texts() -> None:
     evil = "<script>alert(1)</script>\"'&]]>"
     quoted = evil.replace("\\", "\\\\").replace('"', '\\"')
-    view = view_of(
+    view = seen(
         f'solid a {{ param label = "{quoted}"\n @note("{quoted}") @layer("{quoted}") solid b {{'
-        f' body = circle(radius: 5) }}\n drawing d {{ t = text("<b>", height: 5) }} }}'
+        f' body = circle(radius: 5) }}\n drawing d {{ t = text("<b>", height: 5) }} }}',
+        solved=True,
     )
     root = svg(view, LAYERS)
     assert {node.tag.removeprefix(SVG) for node in root.iter()} <= {

@@ -7,8 +7,6 @@ import re
 import threading
 from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import partial
-from html.parser import HTMLParser
 from pathlib import Path
 from typing import Any
 
@@ -20,84 +18,60 @@ from aidl_lang.tools.preview.files import watch
 from aidl_lang.tools.preview.host import LONGEST, MOST_ORDERS
 from aidl_lang.tools.preview.local import PANE
 from aidl_lang.tools.preview.site import MOST_PAGES
-from tests.preview import talking as pages
-from tests.preview.talking import ADDRESS, CHANGED, TEXT, TOKEN, Talk, serving
+from tests.preview.talking import ADDRESS, CHANGED, TEXT, TOKEN, Talk, serving, talking
 
 _ERROR = "window/showMessage"
 
 
-@pytest.fixture
-def client(file: Path) -> Iterator[TestClient]:
-    with serving(file) as client:
-        yield client
-
-
-@pytest.fixture
-def talking(file: Path) -> Any:
-    """A page of a client."""
-    return partial(_talking, file)
-
-
-def _talking(file: Path, client: TestClient, **headers: str) -> Any:
-    return pages.talking(client, file, **headers)
-
-
 @dataclass(frozen=True)
-class Still:
-    """A program that no test changes, served for many."""
+class Site:
+    """A program that is served."""
 
     client: TestClient
     file: Path
 
     def talking(self, **headers: str) -> Any:
-        return pages.talking(self.client, self.file, **headers)
+        """A page that is open."""
+        return talking(self.client, self.file, **headers)
+
+
+@pytest.fixture
+def site(file: Path) -> Iterator[Site]:
+    with serving(file) as client:
+        yield Site(client, file)
 
 
 @pytest.fixture(scope="module")
-def still(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Still]:
+def still(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Site]:
+    """One that no test changes, for many."""
     file = tmp_path_factory.mktemp("still") / "part.aidl"
     file.write_text(TEXT, "utf-8")
     with serving(file) as client:
-        yield Still(client, file)
+        yield Site(client, file)
 
 
-class Links(HTMLParser):
-    def __init__(self) -> None:
-        super().__init__()
-        self.found: list[str] = []
-        self.metas: list[dict[str, str | None]] = []
+def test_the_page_and_all_that_it_asks_for(still: Site) -> None:
+    def get(path: str) -> Any:
+        answer = still.client.get(f"/{TOKEN}/{path}")
+        assert answer.status_code == 200
+        return answer
 
-    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        values = dict(attrs)
-        if tag == "meta":
-            self.metas.append(values)
-        for name in ("src", "href"):
-            link = values.get(name) or ""
-            if link and not link.startswith("#"):
-                self.found.append(link)
-
-
-def test_the_page_and_all_that_it_asks_for(client: TestClient) -> None:
-    answer = client.get(f"/{TOKEN}/")
-    assert answer.status_code == 200
-    assert "{{" not in answer.text
-    page = Links()
-    page.feed(answer.text)
-    scripts = [link for link in page.found if link.endswith(".js")]
-    assert scripts
-    for link in page.found:
-        assert client.get(f"/{TOKEN}/{link}").status_code == 200
-    policy = next(m["content"] for m in page.metas if m.get("http-equiv") == "Content-Security-Policy")
-    assert "script-src 'self'" in str(policy)
-    assert "'unsafe" not in answer.headers["content-security-policy"]
+    page = get("")
+    assert "{{" not in page.text
+    links = re.findall(r'(?:src|href)="([^"#]+)"', page.text)
+    assert any(link.endswith(".js") for link in links)
+    for link in links:
+        get(link)
+    assert re.search(
+        r'<meta http-equiv="Content-Security-Policy" content="[^"]*script-src \S*self', page.text
+    )
+    assert "'unsafe" not in page.headers["content-security-policy"]
     for module in PANE.glob("*.js"):
-        served = client.get(f"/{TOKEN}/pane/{module.name}")
-        assert (served.text, served.headers["content-type"]) == (
-            module.read_text("utf-8"),
-            "text/javascript; charset=utf-8",
-        )
+        served = get(f"pane/{module.name}")
+        assert served.text == module.read_text("utf-8")
+        assert served.headers["content-type"] == "text/javascript; charset=utf-8"
         for imported in re.findall(r'^import .* from "\./([\w.]+)"', served.text, re.MULTILINE):
-            assert client.get(f"/{TOKEN}/pane/{imported}").status_code == 200
+            get(f"pane/{imported}")
 
 
 @pytest.mark.parametrize(
@@ -120,7 +94,7 @@ def test_the_page_and_all_that_it_asks_for(client: TestClient) -> None:
         f"/{TOKEN}/pane/main.js%00.css",
     ],
 )
-def test_there_is_nothing_else(still: Still, path: str) -> None:
+def test_there_is_nothing_else(still: Site, path: str) -> None:
     assert still.client.get(path, follow_redirects=False).status_code in (307, 404)
     assert still.client.get(path).status_code in (404, 200 if path == f"/{TOKEN}" else 404)
 
@@ -128,7 +102,7 @@ def test_there_is_nothing_else(still: Still, path: str) -> None:
 @pytest.mark.parametrize(
     "name", ["evil.example", "evil.example:8123", "127.0.0.1", f"{ADDRESS}.evil.example", ""]
 )
-def test_another_name_is_refused(still: Still, name: str) -> None:
+def test_another_name_is_refused(still: Site, name: str) -> None:
     assert still.client.get(f"/{TOKEN}/", headers={"host": name}).status_code == 421
     with pytest.raises(WebSocketDisconnect), still.talking(host=name):
         pass
@@ -144,13 +118,13 @@ def test_another_name_is_refused(still: Still, name: str) -> None:
         f"http://{ADDRESS}.evil.example",
     ],
 )
-def test_pages_from_elsewhere_are_refused(still: Still, origin: str) -> None:
+def test_pages_from_elsewhere_are_refused(still: Site, origin: str) -> None:
     with pytest.raises(WebSocketDisconnect), still.talking(origin=origin):
         pass
     assert still.client.get(f"/{TOKEN}/", headers={"origin": origin}).status_code == 403
 
 
-def test_the_socket_needs_the_token(still: Still) -> None:
+def test_the_socket_needs_the_token(still: Site) -> None:
     with (
         pytest.raises(WebSocketDisconnect),
         still.client.websocket_connect(
@@ -160,10 +134,10 @@ def test_the_socket_needs_the_token(still: Still) -> None:
         pass
 
 
-def test_a_page_gets_pictures_and_changes_the_text(client: TestClient, talking: Any, file: Path) -> None:
-    with talking(client, origin=f"http://{ADDRESS}") as page:
+def test_a_page_gets_pictures_and_changes_the_text(site: Site) -> None:
+    with site.talking(origin=f"http://{ADDRESS}") as page:
         first = page.preview()
-        assert first["uri"] == file.as_uri()
+        assert first["uri"] == site.file.as_uri()
         assert page.text() == {
             "version": 1,
             "text": TEXT,
@@ -175,18 +149,16 @@ def test_a_page_gets_pictures_and_changes_the_text(client: TestClient, talking: 
         attempt = page.answer("aidl/try", knobs={"width": 90})
         assert attempt["tried"]
         assert attempt["box"][2] == pytest.approx(45)
-        assert file.read_text("utf-8") == TEXT
+        assert site.file.read_text("utf-8") == TEXT
         assert page.preview()["box"][2] == pytest.approx(30)
         assert page.answer("aidl/setKnob", path="width", value=80) == {"applied": True}
-        assert file.read_text("utf-8") == TEXT.replace("60mm", "80mm")
+        assert site.file.read_text("utf-8") == TEXT.replace("60mm", "80mm")
         assert page.text()["text"] == TEXT.replace("60mm", "80mm")
         after = page.told(CHANGED, version=2)
         assert after["handles"] or page.told(CHANGED, version=2)["handles"]
 
 
-def test_a_save_before_the_files_are_watched_is_seen(
-    file: Path, talking: Any, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_save_before_the_files_are_watched_is_seen(file: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     may_watch = threading.Event()
 
     async def late(*told: Any) -> None:
@@ -194,7 +166,7 @@ def test_a_save_before_the_files_are_watched_is_seen(
         await watch(*told)
 
     monkeypatch.setattr("aidl_lang.tools.preview.site.watch", late)
-    with serving(file) as client, talking(client) as page:
+    with serving(file) as client, talking(client, file) as page:
         assert page.preview()["version"] == 1
         file.write_text(TEXT.replace("60mm", "40mm"), "utf-8")
         may_watch.set()
@@ -202,10 +174,10 @@ def test_a_save_before_the_files_are_watched_is_seen(
             pass
 
 
-def test_fixes_are_applied_to_the_text_they_are_of(client: TestClient, talking: Any, file: Path) -> None:
+def test_fixes_are_applied_to_the_text_they_are_of(site: Site) -> None:
     lines = ("one = line((0, 0), (9, 0))", "two = line((9, 0), (5, 5))", "three = line((5, 5), (1, 2))")
-    file.write_text(f"solid a {{ {'; '.join(lines)} }}\n", "utf-8")
-    with talking(client) as page:
+    site.file.write_text(f"solid a {{ {'; '.join(lines)} }}\n", "utf-8")
+    with site.talking() as page:
         made = page.preview()
         while not any(p["fixes"] for p in made["problems"]):
             made = page.preview()
@@ -214,23 +186,22 @@ def test_fixes_are_applied_to_the_text_they_are_of(client: TestClient, talking: 
         assert page.answer("aidl/fix", **of, fix=9) == {"applied": False, "reason": "there is no such fix"}
         assert page.answer("aidl/fix", **of, fix=0) == {"applied": True}
         page.told(CHANGED, version=made["version"] + 1)
-        assert "constrain one.start == three.end" in file.read_text("utf-8")
+        assert "constrain one.start == three.end" in site.file.read_text("utf-8")
         assert page.answer("aidl/fix", **of, fix=0)["error"]["message"] == "the text has changed"
 
 
-@pytest.mark.parametrize("to", [(1e300, 0.0), (float("nan"), 0.0), (float("inf"), 1.0)])
-@pytest.mark.parametrize("handle", ["", "a.body", "no such", "a.body.top_right"])
-def test_dragging_nowhere_is_refused(still: Still, handle: str, to: tuple[float, float]) -> None:
+def test_dragging_nowhere_is_refused(still: Site) -> None:
     with still.talking() as page:
         page.preview()
-        assert page.answer("aidl/try", drag={"id": handle, "to": to})["error"]["message"]
-        done = page.answer("aidl/drag", id=handle, to=to)
-        assert "error" in done or done["reason"]
+        for handle, to in (("a.body.top_right", (1e300, 0.0)), ("a.body", (float("nan"), 0.0)), ("", (1, 2))):
+            assert page.answer("aidl/try", drag={"id": handle, "to": to})["error"]["message"]
+            done = page.answer("aidl/drag", id=handle, to=to)
+            assert "error" in done or done["reason"]
     assert still.file.read_text("utf-8") == TEXT
 
 
-def test_noise_is_passed_over(still: Still) -> None:
-    noise = (
+def test_noise_is_passed_over(still: Site) -> None:
+    noise = [
         "",
         "null",
         "7",
@@ -240,16 +211,16 @@ def test_noise_is_passed_over(still: Still) -> None:
         '{"id":1}',
         '{"method":"aidl/try"}',
         '{"id":true,"method":"x"}',
-    )
+    ]
+    noise += ['{"id":"1","method":"aidl/preview"}', "[" * 60_000, '{"a":' * 10_000]
     with still.talking() as page:
-        for text in (*noise, '{"id":"1","method":"aidl/preview"}', "[" * 60_000, '{"a":' * 10_000):
+        for text in noise:
             page.socket.send_text(text)
         assert page.preview()["status"] == "solved"
 
 
-@pytest.mark.parametrize(
-    ("method", "params"),
-    [
+def test_hostile_questions_are_refused(still: Site) -> None:
+    questions: list[tuple[str, dict[str, Any]]] = [
         ("aidl/preview", {"show": "names"}),
         ("aidl/preview", {"show": [1]}),
         ("aidl/preview", {"uri": "file:///etc/passwd"}),
@@ -271,16 +242,15 @@ def test_noise_is_passed_over(still: Still) -> None:
         ("textDocument/didChange", {}),
         ("workspace/executeCommand", {"command": "aidl.applyFixes"}),
         ("shutdown", {}),
-    ],
-)
-def test_hostile_questions_are_refused(still: Still, method: str, params: dict[str, Any]) -> None:
+    ]
     with still.talking() as page:
-        assert page.answer(method, **params)["error"]["message"]
+        for method, params in questions:
+            assert page.answer(method, **params)["error"]["message"], (method, params)
         assert page.preview()["status"] == "solved"
     assert still.file.read_text("utf-8") == TEXT
 
 
-def test_bytes_and_much_end_a_connection(still: Still) -> None:
+def test_bytes_and_much_end_a_connection(still: Site) -> None:
     with still.talking() as page:
         page.socket.send_bytes(b"\xff")
         with pytest.raises(WebSocketDisconnect) as refused:
@@ -295,30 +265,28 @@ def test_bytes_and_much_end_a_connection(still: Still) -> None:
         assert page.preview()
 
 
-def test_only_so_many_pages(client: TestClient, talking: Any) -> None:
-    open_pages = [talking(client) for _ in range(MOST_PAGES)]
+def test_only_so_many_pages(site: Site) -> None:
+    open_pages = [site.talking() for _ in range(MOST_PAGES)]
     for each in open_pages:
         each.__enter__()
-    with talking(client) as one_more, pytest.raises(WebSocketDisconnect) as refused:
+    with site.talking() as one_more, pytest.raises(WebSocketDisconnect) as refused:
         one_more.told("never")
     assert refused.value.reason == f"{MOST_PAGES} pages show this program already: close one of them."
     open_pages[0].__exit__(None, None, None)
-    with talking(client) as page:
+    with site.talking() as page:
         assert page.preview()
     for each in open_pages[1:]:
         each.__exit__(None, None, None)
 
 
-def test_a_page_that_asks_for_too_much_is_told_and_holds_up_no_other(
-    client: TestClient, talking: Any
-) -> None:
-    with talking(client) as flood, talking(client) as page:
+def test_a_page_that_asks_for_too_much_is_told_and_holds_up_no_other(site: Site) -> None:
+    with site.talking() as flood, site.talking() as page:
         asked = [flood.ask("aidl/export", format="svg") for _ in range(40 * MOST_ORDERS)]
         assert page.answer("aidl/try", knobs={"width": 50})["box"][2] == pytest.approx(25)
         assert page.answer("aidl/export", format="dxf")["name"] == "part.dxf"
         assert flood.answered(asked[0])["name"] == "part.svg"
         assert "more than can be done at once" in str(_said(flood))
-    with talking(client) as page:
+    with site.talking() as page:
         assert page.preview()
 
 
@@ -329,13 +297,10 @@ def _said(flood: Talk) -> list[dict[str, Any]]:
     return flood.heard
 
 
-@pytest.mark.parametrize("content", [b"\xff\xfe\x00", b"\xc3"])
-def test_what_is_no_text_leaves_the_picture(
-    client: TestClient, talking: Any, file: Path, content: bytes
-) -> None:
-    with talking(client) as page:
+def test_what_is_no_text_leaves_the_picture(site: Site) -> None:
+    with site.talking() as page:
         before = page.preview()
-        file.write_bytes(content)
+        site.file.write_bytes(b"\xff\xfe\x00")
         while "UTF-8" not in page.told(_ERROR)["message"]:
             pass
         assert page.preview()["svg"] == before["svg"]

@@ -15,7 +15,7 @@ import sys
 from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property
 from types import NoneType, UnionType
-from typing import Annotated, Any, Literal, Union, get_args, get_origin, get_type_hints
+from typing import Any, Literal, Union, get_args, get_origin, get_type_hints
 
 from aidl_lang.common.diagnostics import AidlError, Diagnostic
 from aidl_lang.common.names import nearest
@@ -143,24 +143,13 @@ def _object(kind: type, made: dict[str, Json]) -> Json:
     """Returns the schema of a dataclass of a result; those in it are put into `made`, by their names."""
     hints = get_type_hints(kind)
     names = [field.name for field in shown_fields(kind)]
-    properties = {name: _given(hints[name], made) for name in names}
+    properties = {name: _schema(hints[name], made) for name in names}
     return _closed(properties, names, description=" ".join((kind.__doc__ or "").split()))
 
 
 def _closed(properties: Json, required: list[str], **more: str) -> Json:
     whole = {"properties": properties, "required": required, "additionalProperties": False}
     return {"type": "object", **more, **whole}
-
-
-def _given(kind: Any, made: dict[str, Json]) -> Json:
-    """Returns the schema of a result's value. A number that is not finite comes as null."""
-    if dataclasses.is_dataclass(kind) and isinstance(kind, type):
-        if kind.__name__ not in made:
-            made[kind.__name__] = _object(kind, made)
-        return {"$ref": f"#/$defs/{kind.__name__}"}
-    if kind is float:
-        return {"type": ["number", "null"]}
-    return _schema(kind, lambda inner: _given(inner, made))
 
 
 def _parameter(parameter: inspect.Parameter, hint: Any) -> Parameter:
@@ -171,7 +160,7 @@ def _parameter(parameter: inspect.Parameter, hint: Any) -> Parameter:
 
 
 def _property(parameter: Parameter, strict: bool) -> Json:
-    schema = _strict(parameter.kind) if strict else _taken(parameter.kind)
+    schema = _strict(_schema(parameter.kind)) if strict else _schema(parameter.kind)
     if parameter.is_required:
         return {**schema, "description": parameter.description}
     if strict:
@@ -181,34 +170,37 @@ def _property(parameter: Parameter, strict: bool) -> Json:
     return {**schema, "description": parameter.description, **known}
 
 
-def _taken(kind: Any) -> Json:
-    return _schema(kind, _taken)
-
-
-def _strict(kind: Any) -> Json:
-    if get_origin(kind) is not Mapping:
-        return _schema(kind, _strict)
-    value = _strict(get_args(kind)[1])
+def _strict(schema: Json) -> Json:
+    """Returns the schema with a list of pairs in place of a mapping."""
+    if not (value := schema.get("additionalProperties")):
+        return schema
     pair = _closed({"name": {"type": "string"}, "value": value}, ["name", "value"])
     return {"type": "array", "items": pair}
 
 
-def _schema(kind: Any, inner: Callable[[Any], Json]) -> Json:
+def _schema(kind: Any, made: dict[str, Json] | None = None) -> Json:
+    """Returns the schema of an argument; or of a result's value, whose dataclasses are put into `made`, and
+    where a number that is not finite comes as null.
+    """
     origin, arguments = get_origin(kind), get_args(kind)
+    if made is not None and dataclasses.is_dataclass(kind) and isinstance(kind, type):
+        if kind.__name__ not in made:
+            made[kind.__name__] = _object(kind, made)
+        return {"$ref": f"#/$defs/{kind.__name__}"}
     if kind is Any:
         return {}
+    if kind is float and made is not None:
+        return {"type": ["number", "null"]}
     if kind in _PRIMITIVES:
         return {"type": _PRIMITIVES[kind]}
-    if origin is Annotated:
-        return {**inner(arguments[0]), "description": arguments[1]}
     if _is_union(kind):
-        return {"anyOf": [inner(k) for k in arguments]}
+        return {"anyOf": [_schema(k, made) for k in arguments]}
     if origin is Literal:
         return {"type": "string", "enum": list(arguments)}
     if origin in (Sequence, list):
-        return {"type": "array", "items": inner(arguments[0])}
+        return {"type": "array", "items": _schema(arguments[0], made)}
     if origin in (Mapping, dict):
-        value = inner(arguments[1])
+        value = _schema(arguments[1], made)
         return {"type": "object", "additionalProperties": value} if value else {"type": "object"}
     raise TypeError(f"no schema for {kind!r}")
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import base64
 import json
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, TypeAlias, cast
 
 from aidl_lang import pipeline
@@ -68,10 +68,8 @@ def shortened(document: Json, most: int) -> tuple[Json, str | None]:
     Data that follow from the rest, or can be asked for by a path, go first.
     """
     left_out: list[str] = []
-    for words, shorten in _WAYS:
-        if len(text(document)) <= most:
-            break
-        shorten(document)
+    ways = _shortened(document)
+    while len(text(document)) > most and (words := next(ways, None)) is not None:
         left_out.append(words)
     if len(text(document)) > most:
         document = {
@@ -94,41 +92,26 @@ def _walk(structure: Json) -> Iterator[Json]:
         yield from _walk(child)
 
 
-def _drop_outlines(document: Json) -> None:
+def _shortened(document: Json) -> Iterator[str]:
+    """Takes out more and more, and yields each time what."""
     for region in document["regions"].values():
         region["faces"] = []
         region["geometry"] = {"type": "MultiPolygon", "coordinates": []}
-
-
-def _drop_satisfied(document: Json) -> None:
+    yield "outlines of regions"
     document["constraints"] = [c for c in document["constraints"] if not c["satisfied"]]
-
-
-def _drop_parts(document: Json) -> None:
+    yield "constraints that hold"
     for structure in _walk(document["root"]):
         for geometry in structure["geometry"].values():
             if "parts" in geometry:
                 geometry["parts"] = {}
-
-
-def _drop_inner_structures(document: Json) -> None:
+    yield "parts of shapes"
     for child in document["root"]["structures"]:
         child["structures"] = []
-
-
-def _drop_structures(document: Json) -> None:
+    yield "structures in structures"
     document["root"]["structures"] = []
     document["regions"] = {}
     document["free"], document["motions"] = [], []
-
-
-_WAYS: tuple[tuple[str, Callable[[Json], None]], ...] = (
-    ("outlines of regions", _drop_outlines),
-    ("constraints that hold", _drop_satisfied),
-    ("parts of shapes", _drop_parts),
-    ("structures in structures", _drop_inner_structures),
-    ("all structures but the root", _drop_structures),
-)
+    yield "all structures but the root"
 
 
 # --- Conflicts of a program: the constraints, the change that each would need, and whether that helps.

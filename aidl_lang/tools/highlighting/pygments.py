@@ -19,7 +19,7 @@ from pygments.token import (
     _TokenType,
 )
 
-from aidl_lang.tools.highlighting.classes import classify
+from aidl_lang.tools.highlighting import classify
 
 TOKENS: Mapping[str, _TokenType] = {
     "comment.line": Comment.Single,

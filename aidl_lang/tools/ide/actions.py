@@ -68,18 +68,6 @@ class Action:
     is_preferred: bool = False
 
 
-def drawn_alike(one: View, other: View) -> bool:
-    """Tells whether two programs solve and draw the same. Raises CannotError without a picture."""
-    outcomes = [view.outcome for view in (one, other)]
-    if any(outcome is None or not outcome.ok for outcome in outcomes):
-        return False
-    try:
-        first, second = (outcome.export(".svg") for outcome in outcomes if outcome is not None)
-    except ExportError as reason:
-        raise CannotError(str(reason)) from None
-    return first == second
-
-
 def first_error(view: View) -> str:
     return next((d.message for d in view.diagnostics if d.is_error), "the drawing would change")
 
@@ -312,7 +300,12 @@ def _extracted(view: View, node: ast.Structure, outermost: ast.Node, name: str) 
     used = Edit(node.kind_word.span.to(node.span), f"{target} = {name}({arguments}){placement}")
     edits = [insert(view.source, above_comments(text, outermost.span.start), template), used]
     after = edited(view, edits)
-    if not drawn_alike(view, after):
+    outcomes = [each.outcome for each in (view, after) if each.outcome is not None and each.outcome.ok]
+    try:
+        pictures = [outcome.export(".svg") for outcome in outcomes]
+    except ExportError as reason:
+        raise CannotError(str(reason)) from None
+    if len(pictures) < 2 or pictures[0] != pictures[1]:
         raise CannotError(f"`{node.name.text}` cannot be made a template as it is: {first_error(after)}")
     return edits
 
@@ -371,6 +364,14 @@ class _Thing:
     name: str
     box: Box
     is_point: bool
+
+    def at(self, axis: str) -> float:
+        """Returns the place of its middle."""
+        box = self.box
+        return (box.left + box.right) / 2 if axis == "x" else (box.bottom + box.top) / 2
+
+    def written(self, axis: str) -> str:
+        return f"{self.name}.{axis}" if self.is_point else f"{self.name}.center.{axis}"
 
 
 def missing_constraints(view: View, offset: int) -> Iterator[Action]:
@@ -452,16 +453,15 @@ def _held(
 ) -> Iterator[str]:
     """Yields alignments that hold now, then the present coordinate."""
     moving = [thing.removeprefix(f"{structure.path}.") for thing in motion.things]
-    at, whole = _middle(moved.box, axis), model.root.box
+    at, whole = moved.at(axis), model.root.box
     near = _ALIGNED * (math.hypot(whole.width, whole.height) if whole is not None else 1.0)
-    place = f"{moved.name}.{axis}" if moved.is_point else f"{moved.name}.center.{axis}"
     for name, other in things.items():
         is_apart = not any(name == m or name.startswith(f"{m}.") or m.startswith(f"{name}.") for m in moving)
-        if is_apart and abs(_middle(other.box, axis) - at) <= near:
-            yield f"{place} == {name}.{axis}" if other.is_point else f"{place} == {name}.center.{axis}"
+        if is_apart and abs(other.at(axis) - at) <= near:
+            yield f"{moved.written(axis)} == {other.written(axis)}"
             break
     if (origin := _origin(model.root, structure.path)) is not None:
-        yield f"{place} == {fixed(at - origin['xy'.index(axis)], _DECIMALS)}"
+        yield f"{moved.written(axis)} == {fixed(at - origin['xy'.index(axis)], _DECIMALS)}"
 
 
 def _things(structure: SolvedStructure) -> Iterator[_Thing]:
@@ -504,7 +504,3 @@ def _number_of(structure: SolvedStructure, name: str) -> float | None:
     values: list[object] = [s.params.get(field) for s in structure.walk() if s.path == path]
     values += [g.values.get(field) for g in structure.walk_geometry() if g.path == path]
     return next((float(v) for v in values if isinstance(v, float | int) and not isinstance(v, bool)), None)
-
-
-def _middle(box: Box, axis: str) -> float:
-    return (box.left + box.right) / 2 if axis == "x" else (box.bottom + box.top) / 2

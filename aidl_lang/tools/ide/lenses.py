@@ -205,7 +205,9 @@ def lenses(view: View) -> list[Lens]:
     motions = [motion for motion in model.motions if motion.things != (model.root.path,)]
     for node in ast.walk(view.module):
         if isinstance(node, ast.Structure) and (found := made.get(node.span)):
-            title = _title_of_structure(found, motions, model.constraints)
+            said = list(dict.fromkeys(_one(each, motions, model.constraints) for each in found))
+            times = f"{len(found)} times · " if len(found) > 1 else ""
+            title = times + first_few(said, _NAMED, " …", " | ")
             if found[0] is model.root:
                 as_whole = "moves only as a whole" if model.degrees else _HELD
                 title = f"{_status(solved)} · {title.replace(_HELD, as_whole)}"
@@ -218,14 +220,6 @@ def _status(solved: Solved) -> str:
     if solved.holds:
         return "solved" if degrees is None else f"solved, {counted(degrees, 'degree')} of freedom"
     return "some constraints do not hold" if solved.outcome.status == "partial" else "does not solve"
-
-
-def _title_of_structure(
-    found: Sequence[SolvedStructure], motions: Sequence[Motion], reports: Sequence[ConstraintReport]
-) -> str:
-    said = list(dict.fromkeys(_one(structure, motions, reports) for structure in found))
-    times = f"{len(found)} times · " if len(found) > 1 else ""
-    return times + first_few(said, _NAMED, " …", " | ")
 
 
 def _one(structure: SolvedStructure, motions: Sequence[Motion], reports: Sequence[ConstraintReport]) -> str:

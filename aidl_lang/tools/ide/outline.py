@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from pathlib import Path
 
 from aidl_lang.checking.builtins import ATTRIBUTES, PATTERNS
 from aidl_lang.checking.symbols import SymbolKind, word_meant
@@ -35,43 +34,36 @@ class Entry:
     children: tuple[Entry, ...] = ()
 
 
-@record()
-class SymbolMatch:
-    """An entry of the file `path`; `container` is the dotted path of the one around it."""
-
-    path: Path
-    entry: Entry
-    container: str
-
-
 def outline(view: View) -> list[Entry]:
     """Returns the declarations of a file in order of writing, with those in loops and branches."""
     return list(_entries(view, view.module.statements))
 
 
-def search(project: Project, query: str) -> list[SymbolMatch]:
-    """Returns entries whose names have a query's letters in this order, whole names and beginnings first."""
+def search(project: Project, query: str) -> list[tuple[View, Entry, str]]:
+    """Returns entries whose names have a query's letters in this order, whole names and beginnings first;
+    each with its file, and the dotted path of what is around it.
+    """
     wanted = fold(query)
     found = [
-        each
+        (view, entry, container)
         for path in project.workspace.programs()
         if (view := project.view(path)) is not None
-        for each in _flat(view.path, outline(view), "")
-        if is_spelled_in(query, each.entry.name)
+        for entry, container in flat(outline(view))
+        if is_spelled_in(query, entry.name)
     ]
 
-    def rank(each: SymbolMatch) -> tuple[bool, bool, bool, int]:
-        name = fold(each.entry.name)
+    def rank(each: tuple[View, Entry, str]) -> tuple[bool, bool, bool, int]:
+        name = fold(each[1].name)
         return name != wanted, not name.startswith(wanted), wanted not in name, len(name)
 
     return sorted(found, key=rank)[:MOST_FOUND]
 
 
-def _flat(path: Path, entries: Iterable[Entry], container: str) -> Iterator[SymbolMatch]:
+def flat(entries: Iterable[Entry], container: str = "") -> Iterator[tuple[Entry, str]]:
+    """Yields entries and what is in them, each with the dotted path of the one around it."""
     for entry in entries:
-        yield SymbolMatch(path, entry, container)
-        inner = f"{container}.{entry.name}" if container else entry.name
-        yield from _flat(path, entry.children, inner)
+        yield entry, container
+        yield from flat(entry.children, f"{container}.{entry.name}" if container else entry.name)
 
 
 def _entries(view: View, statements: Iterable[ast.Statement]) -> Iterator[Entry]:
@@ -314,8 +306,11 @@ def colors(view: View) -> list[tuple[Span, tuple[int, int, int]]]:
     return found
 
 
-def spellings(view: View, span: Span, color: tuple[int, int, int]) -> list[str]:
-    """Returns the spellings of a colour: its name, `#rrggbb`, and three numbers if it has three now."""
+def spellings(view: View, span: Span, parts: tuple[float, float, float]) -> list[str]:
+    """Returns the spellings of a colour, given by its red, green and blue from 0 to 1: its name, `#rrggbb`,
+    and three numbers if it has three now.
+    """
+    color = tuple(round(255 * min(max(part, 0.0), 1.0)) for part in parts)
     names = sorted(name for name in COLOR_NAMES if rgb(name) == color)
     written = [f'"{name}"' for name in names[:1]] + ['"#{:02x}{:02x}{:02x}"'.format(*color)]
     now = view.source.text[span.start : span.end]
@@ -329,9 +324,3 @@ def _literal(node: ast.Expression) -> object:
             return value
         case _:
             return None
-
-
-def as_bytes(parts: Sequence[float]) -> tuple[int, int, int]:
-    """Converts red, green and blue from 0 to 1 → from 0 to 255."""
-    red, green, blue = (round(255 * min(max(part, 0.0), 1.0)) for part in parts)
-    return red, green, blue

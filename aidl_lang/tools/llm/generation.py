@@ -37,24 +37,24 @@ from aidl_lang.tools.llm.messages import (
 STAGES = ("syntax", "types", "validity", "solve", "asserts", "contacts", "done")
 """The checks of a program, in order."""
 
-_STAGE_OF = {"01": "syntax", "02": "types", "03": "types", "06": "solve", "08": "validity"}
-_ASSERT = "E0604"
+_STAGE_OF = {
+    "01": "syntax",
+    "02": "types",
+    "03": "types",
+    "06": "solve",
+    "E0604": "asserts",
+    **dict.fromkeys(CONTACTS, "contacts"),
+}
+"""By code, or else by family; others fail `validity`."""
 _MOST = 12
 """Most motions and boxes in the feedback."""
 
 
 def stage_of(diagnostics: Iterable[Diagnostic]) -> str:
     """Returns the first stage that fails; remarks on parts that touch nothing fail `contacts`."""
-    failing = {_stage(d) for d in diagnostics if d.is_error or d.code in CONTACTS}
+    codes = (d.code for d in diagnostics if d.is_error or d.code in CONTACTS)
+    failing = {_STAGE_OF.get(code) or _STAGE_OF.get(code[1:3], "validity") for code in codes}
     return next((stage for stage in STAGES if stage in failing), "done")
-
-
-def _stage(diagnostic: Diagnostic) -> str:
-    if diagnostic.code == _ASSERT:
-        return "asserts"
-    if diagnostic.code in CONTACTS:
-        return "contacts"
-    return _STAGE_OF.get(diagnostic.code[1:3], "validity")
 
 
 def errors(compiled: Compiled) -> str:

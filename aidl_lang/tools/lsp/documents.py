@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import os
 import re
+from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import field
 from pathlib import Path
@@ -22,10 +23,18 @@ from aidl_lang.common.records import record
 from aidl_lang.common.resources import resource
 from aidl_lang.common.source import SourceFile, Span
 from aidl_lang.solver.hierarchy import Memory
+from aidl_lang.tools.ide.completion import Completion
+from aidl_lang.tools.ide.dragging import Handle
+from aidl_lang.tools.ide.lenses import Found
+from aidl_lang.tools.ide.preview.elements import Preview
 from aidl_lang.tools.ide.workspace import Positions, Unit, View
 
 _HALVES = re.compile("[\ud800-\udfff]")
 """Surrogate halves of characters, which JSON can hold and no text may."""
+
+
+Look: TypeAlias = frozenset[str]
+"""The layers over a picture."""
 
 
 @record(eq=False)
@@ -50,6 +59,15 @@ class Document:
     solved    the serial of the last run text
     memory    of the solver, from run to run
     editing   held by an edit that is asked for beside the text
+    viewers   those who see it, each with the layers over its picture
+    handles   the draggable points found last
+    pictures  those made last, each of a run
+    asked     how often a viewer asked for what outdates its tries
+    told      the diagnostics published of it, by file, and their serial
+    hinted    the version that hints were given for, and the serial of its outcome
+    tried     what came of trying its params, and the version that was tried
+    listed    its last list of completions, and how many there were
+    colored   its last semantic tokens
     """
 
     uri: str
@@ -65,6 +83,15 @@ class Document:
     is_open: bool = True
     memory: Memory = field(default_factory=Memory)
     editing: asyncio.Lock = field(default_factory=asyncio.Lock)
+    viewers: dict[str, Look] = field(default_factory=dict)
+    handles: tuple[Handle, ...] = ()
+    pictures: dict[Look, tuple[VersionedView, Preview]] = field(default_factory=dict)
+    asked: Counter[str] = field(default_factory=Counter)
+    told: tuple[int, dict[str, list[types.Diagnostic]]] = (-1, {})
+    hinted: tuple[int, int | None] | None = None
+    tried: tuple[int, Found] | None = None
+    listed: tuple[int, list[Completion]] = (0, [])
+    colored: types.SemanticTokens | None = None
     _waiting: list[tuple[Callable[[], bool], asyncio.Future[None]]] = field(default_factory=list)
 
     async def until_seen(self, serial: int) -> None:
@@ -80,6 +107,13 @@ class Document:
             ready: asyncio.Future[None] = asyncio.get_running_loop().create_future()
             self._waiting.append((is_there, ready))
             await asyncio.wait([ready], timeout=seconds)
+
+    def looks(self) -> dict[Look, list[str]]:
+        """Returns the viewers grouped by the picture they see."""
+        return {
+            look: [viewer for viewer, wanted in self.viewers.items() if wanted == look]
+            for look in self.viewers.values()
+        }
 
     def tell(self) -> None:
         """Wakes those who wait for the present state."""
@@ -128,6 +162,7 @@ class Documents:
         if document is not None:
             self._by_uri = {key: each for key, each in self._by_uri.items() if each is not document}
             document.is_open = False
+            document.viewers.clear()
             document.tell()
         return document
 
@@ -268,7 +303,7 @@ class Converter:
         return types.WorkspaceEdit(document_changes=[types.TextDocumentEdit(*each) for each in files])
 
 
-# --- Publishes diagnostics to the client, for each file.
+# --- Diagnostics as the client has them.
 
 SOURCE = "aidl"
 _SEVERITY = {
@@ -310,42 +345,6 @@ def _related(diagnostic: Diagnostic, convert: Converter) -> Iterator[types.Diagn
     for label in (*own, *diagnostic.secondary):
         if (place := convert.location(label.span)) is not None:
             yield types.DiagnosticRelatedInformation(place, label.text or diagnostic.message)
-
-
-class Publisher:
-    """Publishes for each file the diagnostics of all programs that use it."""
-
-    def __init__(self, send: Callable[[types.PublishDiagnosticsParams], None]) -> None:
-        self._send = send
-        self._told: dict[Document, dict[str, list[types.Diagnostic]]] = {}
-        self._serials: dict[Document, int] = {}
-
-    def publish(
-        self, document: Document, known: VersionedView, found: list[tuple[str, types.Diagnostic]]
-    ) -> None:
-        """Replaces the diagnostics of a program; does nothing if those before were of a newer text."""
-        if known.serial < self._serials.get(document, known.serial):
-            return
-        self._serials[document] = known.serial
-        by_uri: dict[str, list[types.Diagnostic]] = {document.uri: []}
-        for uri, diagnostic in found:
-            by_uri.setdefault(uri, []).append(diagnostic)
-        before = self._told.get(document, {})
-        self._told[document] = by_uri
-        self._tell(document.uri, known.version)
-        for uri in before | by_uri:
-            if uri != document.uri and before.get(uri) != by_uri.get(uri):
-                self._tell(uri)
-
-    def forget(self, document: Document) -> None:
-        self._serials.pop(document, None)
-        for uri in self._told.pop(document, {}):
-            self._tell(uri)
-
-    def _tell(self, uri: str, version: int | None = None) -> None:
-        said = [each for by_uri in self._told.values() for each in by_uri.get(uri, ())]
-        unique = {(repr(each.range), each.code, each.message): each for each in said}
-        self._send(types.PublishDiagnosticsParams(uri, list(unique.values()), version))
 
 
 # --- Parameters of our own requests. Clients may send anything: values of other types are refused.

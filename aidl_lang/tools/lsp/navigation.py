@@ -89,10 +89,6 @@ def _outline(
     entries = outline.outline(asked.view)
     if asked.can("text_document.document_symbol.hierarchical_document_symbol_support"):
         return [_symbol(entry, asked.convert) for entry in entries]
-    flat = [(entry, "") for entry in entries]
-    for entry, container in flat:  # grows while it is gone through
-        inner = f"{container}.{entry.name}" if container else entry.name
-        flat += [(child, inner) for child in entry.children]
     return [
         types.SymbolInformation(
             types.Location(asked.uri, asked.convert.range(entry.span)),
@@ -100,7 +96,7 @@ def _outline(
             _kind(entry),
             container_name=container or None,
         )
-        for entry, container in flat
+        for entry, container in outline.flat(entries)
     ]
 
 
@@ -121,14 +117,10 @@ def _symbol(entry: outline.Entry, convert: Converter) -> types.DocumentSymbol:
 
 def _search(server: Server, query: str) -> list[types.WorkspaceSymbol]:
     made = []
-    for found in outline.search(server.project, query):
-        view = server.project.view(found.path)
-        if view is None:
-            continue  # gone just now
-        convert = server.converter(view)
-        place = types.Location(server.documents.uri_of(found.path), convert.range(found.entry.name_span))
-        kind, around = _kind(found.entry), found.container or None
-        made.append(types.WorkspaceSymbol(place, found.entry.name, kind, container_name=around))
+    for view, entry, container in outline.search(server.project, query):
+        if (place := server.converter(view).location(entry.name_span)) is not None:
+            kind, around = _kind(entry), container or None
+            made.append(types.WorkspaceSymbol(place, entry.name, kind, container_name=around))
     return made
 
 
@@ -139,10 +131,8 @@ _FOLD = {"comment": types.FoldingRangeKind.Comment, "imports": types.FoldingRang
 
 
 def register_appearance(server: Server) -> None:
-    tokens = _Tokens()
-    server.answers_to(types.TEXT_DOCUMENT_SEMANTIC_TOKENS_FULL, _LEGEND)(tokens.full)
-    server.answers_to(types.TEXT_DOCUMENT_SEMANTIC_TOKENS_FULL_DELTA, _LEGEND)(tokens.delta)
-    server.on_closed.append(lambda document: tokens.answered.pop(document.uri, None))
+    server.answers_to(types.TEXT_DOCUMENT_SEMANTIC_TOKENS_FULL, _LEGEND)(_tokens)
+    server.answers_to(types.TEXT_DOCUMENT_SEMANTIC_TOKENS_FULL_DELTA, _LEGEND)(_new_tokens)
 
     @server.answers_to(types.TEXT_DOCUMENT_SEMANTIC_TOKENS_RANGE, _LEGEND)
     def tokens_in_range(asked: Asked, params: types.SemanticTokensRangeParams) -> types.SemanticTokens:
@@ -191,39 +181,35 @@ def register_appearance(server: Server) -> None:
     @server.answers_to(types.TEXT_DOCUMENT_COLOR_PRESENTATION)
     def find_spellings(asked: Asked, params: types.ColorPresentationParams) -> list[types.ColorPresentation]:
         span = asked.convert.span(params.range)
-        rgb = outline.as_bytes((params.color.red, params.color.green, params.color.blue))
+        rgb = params.color.red, params.color.green, params.color.blue
         return [
             types.ColorPresentation(text, types.TextEdit(params.range, text))
             for text in outline.spellings(asked.view, span, rgb)
         ]
 
 
-class _Tokens:
-    """The last answer for each document, from which differences are told."""
+_ids = count(1)
 
-    def __init__(self) -> None:
-        self.answered: dict[str, types.SemanticTokens] = {}
-        self._ids = count(1)
 
-    def full(self, asked: Asked, params: object) -> types.SemanticTokens:
-        data = _encoded(outline.semantic_tokens(asked.view), asked.convert)
-        made = types.SemanticTokens(data, result_id=str(next(self._ids)))
-        self.answered[asked.uri] = made
-        return made
+def _tokens(asked: Asked, params: object) -> types.SemanticTokens:
+    data = _encoded(outline.semantic_tokens(asked.view), asked.convert)
+    asked.document.colored = types.SemanticTokens(data, result_id=str(next(_ids)))
+    return asked.document.colored
 
-    def delta(
-        self, asked: Asked, params: types.SemanticTokensDeltaParams
-    ) -> types.SemanticTokens | types.SemanticTokensDelta:
-        before = self.answered.get(asked.uri)
-        now = self.full(asked, params)
-        if before is None or before.result_id != params.previous_result_id:
-            return now
-        old, new = list(before.data), list(now.data)
-        start = alike(old, new)
-        end = alike(old[start:][::-1], new[start:][::-1])
-        edit = types.SemanticTokensEdit(start, len(old) - end - start, new[start : len(new) - end])
-        changed = bool(edit.delete_count or edit.data)
-        return types.SemanticTokensDelta([edit] if changed else [], result_id=now.result_id)
+
+def _new_tokens(
+    asked: Asked, params: types.SemanticTokensDeltaParams
+) -> types.SemanticTokens | types.SemanticTokensDelta:
+    """Returns the difference to the last answer."""
+    before, now = asked.document.colored, _tokens(asked, params)
+    if before is None or before.result_id != params.previous_result_id:
+        return now
+    old, new = list(before.data), list(now.data)
+    start = alike(old, new)
+    end = alike(old[start:][::-1], new[start:][::-1])
+    edit = types.SemanticTokensEdit(start, len(old) - end - start, new[start : len(new) - end])
+    changed = bool(edit.delete_count or edit.data)
+    return types.SemanticTokensDelta([edit] if changed else [], result_id=now.result_id)
 
 
 def _encoded(found: list[outline.Colored], convert: Converter) -> list[int]:

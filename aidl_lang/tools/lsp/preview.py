@@ -6,11 +6,9 @@ import asyncio
 import base64
 import io
 import zipfile
-from collections import Counter
 from collections.abc import Awaitable, Callable, Hashable, Iterable, Mapping, Sequence
-from dataclasses import field, replace
+from dataclasses import replace
 from functools import partial
-from itertools import count
 from typing import Any, TypeAlias, TypeVar
 
 from pygls.exceptions import (
@@ -27,7 +25,7 @@ from aidl_lang.export import FORMATS, OFFERED
 from aidl_lang.export.job import Exported, ExportError, Options, file_names
 from aidl_lang.export.marks import THEMES
 from aidl_lang.export.profiles import PROFILES
-from aidl_lang.tools.ide.dragging import Handle, drag, handles
+from aidl_lang.tools.ide.dragging import drag, handles
 from aidl_lang.tools.ide.preview import layered, preview, tried
 from aidl_lang.tools.ide.preview.elements import Preview, Writer, set_knob, worked_out
 from aidl_lang.tools.ide.references import CannotError
@@ -121,116 +119,118 @@ def packed(stem: str, suffix: str, made: Exported) -> tuple[str, bytes]:
     return f"{stem}-{suffix[1:]}.zip", archive.getvalue()
 
 
-# --- Pictures of the shown documents: made after each run, and sent.
+# --- Pictures of the shown documents: made after each run, and sent; and what is asked for beside them.
 
 _PAUSE = 0.25
 """Seconds without a change before handles are searched, which takes as long as a run."""
+_LONGEST_WAIT = 30.0
+"""Most seconds to wait for an outcome: longer than a run may take."""
 
 Json: TypeAlias = dict[str, Any]
-Look: TypeAlias = frozenset[str]
-"""The layers over a picture."""
 T = TypeVar("T")
-_PLAIN: Look = frozenset()
 
 
-@record(frozen=False, eq=False)
-class _Shown:
-    """A document that is shown.
-
-    viewers  those who see a document, each with the wanted layers
-    handles  the draggable points found last
-    made     the pictures made last, each of a run
-    """
-
-    viewers: dict[str, Look] = field(default_factory=dict)
-    handles: tuple[Handle, ...] = ()
-    made: dict[Look, tuple[documents.VersionedView, Preview]] = field(default_factory=dict)
-
-    def looks(self) -> dict[Look, list[str]]:
-        """Returns the viewers grouped by the picture they see."""
-        return {
-            look: [viewer for viewer, wanted in self.viewers.items() if wanted == look]
-            for look in self.viewers.values()
-        }
+def register_preview(server: Server) -> None:
+    pictures = _Pictures(server)
+    _answer(server, "aidl/preview", documents.Show, pictures.show)
+    _answer(server, "aidl/previewClose", documents.OfDocument, pictures.close)
+    _answer(server, "aidl/try", documents.Try, pictures.attempt)
+    _answer(server, "aidl/setKnob", documents.SetKnob, pictures.set_knob)
+    _answer(server, "aidl/drag", documents.Drag, pictures.drag)
+    _answer(server, "aidl/fix", documents.ApplyFix, pictures.fix)
+    _answer(server, "aidl/export", documents.Export, pictures.export)
+    _answer(server, "aidl/exports", documents.OfDocument, pictures.exports)
 
 
-class Pictures:
-    """The viewers of documents. They are told after each run; handles take longer to find, and follow."""
+def _answer(server: Server, method: str, kind: type[T], answer: Callable[[T], Awaitable[Any]]) -> None:
+    async def handler(params: Any) -> Any:  # pygls takes no parameter that is typed as `object`
+        return await answer(documents.read(params, kind))
+
+    server.feature(method)(handler)
+
+
+class _Pictures:
+    """Viewers of documents are told after each run; handles take longer to find, and follow."""
 
     def __init__(self, server: Server) -> None:
         self.server = server
-        self._shown: dict[documents.Document, _Shown] = {}
         server.on_solved.append(self._solved)
-        server.on_closed.append(lambda document: self._shown.pop(document, None))
 
-    def show(self, document: documents.Document, wanted: documents.Show) -> None:
-        shown = self._shown.setdefault(document, _Shown())
-        shown.viewers[wanted.viewer] = frozenset(wanted.show)
+    async def show(self, given: documents.Show) -> Json | None:
+        """Shows a document from now on."""
+        document = self.server.document(given.uri)
+        document.asked[given.viewer] += 1
+        document.viewers[given.viewer] = frozenset(given.show)
+        self.server.runner.active = document
+        await document.until_solved(document.serial, _LONGEST_WAIT)
+        return await self._picture(document, given.viewer, object())
 
-    def close(self, document: documents.Document, viewer: str) -> None:
+    async def close(self, given: documents.OfDocument) -> None:
         """Stops telling a viewer of a document."""
-        shown = self._shown.get(document)
-        if shown is not None and shown.viewers.pop(viewer, None) is not None and not shown.viewers:
-            self._shown.pop(document)
+        document = self.server.documents.get(given.uri)
+        if document is not None:
+            document.asked[given.viewer] += 1
+            document.viewers.pop(given.viewer, None)
+            if not document.viewers:
+                document.pictures = {}
 
-    def tried(self, asked: Asked, document: documents.Document, view: View, viewer: str) -> Json:
-        """Returns the message for a view of another text. To be called in the solving thread."""
-        shown = self._shown.get(document, _Shown())
-        layers = shown.viewers.get(viewer, _PLAIN)
-        made = preview(view, layers, tried=True, known=shown.handles)
-        return _written(asked, made, view)
-
-    async def picture(self, document: documents.Document, viewer: str, key: Hashable) -> Json | None:
-        """Returns the message for the newest run; None without one. Handles follow."""
-        known = document.ran
-        if known is None or not document.is_open:
-            return None
-        asked = self.server.asked_now(document, known)
-        shown = self._shown.get(document, _Shown())
-        look = shown.viewers.get(viewer, _PLAIN)
-        work = partial(preview, known.view, look, known=shown.handles)
-        made = await self._work(("picture", key), document, work)
-        if made is None:
-            return None
-        if document in self._shown and document.ran is known:
-            kept = {each: of for each, of in shown.made.items() if of[0] is known}
-            shown.made = {**kept, look: (known, made)}
-            self.server.in_background(self._complete(document, asked, made))
-        return _written(asked, made, known.view)
-
-    def _solved(self, document: documents.Document) -> None:
-        if document.ran is None:
-            return
-        self._tell_status(document)
-        shown = self._shown.get(document, _Shown())
-        for look, viewers in shown.looks().items():
+    def _solved(self, document: documents.Document, known: documents.VersionedView) -> None:
+        outcome = known.view.outcome
+        assert outcome is not None
+        severities = [diagnostic.severity.value for diagnostic in outcome.diagnostics]
+        status = {
+            "uri": document.uri,
+            "version": known.version,
+            "status": outcome.status,
+            "degrees": outcome.model.degrees if outcome.model is not None else None,
+            "seconds": sum(outcome.timings.values()),
+            "problems": {"errors": severities.count("error"), "warnings": severities.count("warning")},
+        }
+        self.server.protocol.tell("aidl/status", status)
+        for look, viewers in document.looks().items():
             self.server.in_background(self._send(document, look, viewers))
 
-    async def _send(self, document: documents.Document, look: Look, viewers: Sequence[str]) -> None:
-        if (message := await self.picture(document, viewers[0], (document, look))) is not None:
+    async def _send(self, document: documents.Document, look: documents.Look, viewers: Sequence[str]) -> None:
+        if (message := await self._picture(document, viewers[0], (document, look))) is not None:
             self._tell(viewers, message)
 
     def _tell(self, viewers: Iterable[str], message: Json) -> None:
         for viewer in viewers:
             self.server.protocol.tell("aidl/previewChanged", {"viewer": viewer, **message})
 
-    async def _complete(self, document: documents.Document, asked: Asked, made: Preview) -> None:
+    async def _picture(self, document: documents.Document, viewer: str, key: Hashable) -> Json | None:
+        """Returns the message for the newest run; None without one. Handles follow."""
+        known = document.ran
+        if known is None or not document.is_open:
+            return None
+        asked = self.server.asked_now(document, known)
+        look = document.viewers.get(viewer, frozenset())
+        work = partial(preview, known.view, look, known=document.handles)
+        made = await self._made(("picture", key), document, work)
+        if made is None:
+            return None
+        if document.viewers and document.ran is known:
+            kept = {each: of for each, of in document.pictures.items() if of[0] is known}
+            document.pictures = {**kept, look: (known, made)}
+            self.server.in_background(self._complete(asked, made))
+        return _written(asked, made, known.view)
+
+    async def _complete(self, asked: Asked, made: Preview) -> None:
         """Finds the handles, and sends the picture again if they are new."""
+        document, view = asked.document, asked.view
         await asyncio.sleep(_PAUSE)
-        if document.ran is not asked.known or document not in self._shown:
+        if document.ran is not asked.known or not document.viewers:
             return
-        view = asked.known.view
-        found = await self._work(("handles", document), document, lambda: tuple(handles(view)), first=False)
-        shown = self._shown.get(document)
-        if found is None or shown is None or document.ran is not asked.known:
+        found = await self._made(("handles", document), document, lambda: tuple(handles(view)), first=False)
+        if found is None or document.ran is not asked.known:
             return
-        shown.handles = found
-        for look, viewers in shown.looks().items():
-            known, before = shown.made.get(look, (None, made))
+        document.handles = found
+        for look, viewers in document.looks().items():
+            known, before = document.pictures.get(look, (None, made))
             if known is asked.known and before.handles != found:
                 self._tell(viewers, _written(asked, replace(before, handles=found), view))
 
-    async def _work(
+    async def _made(
         self, key: Hashable, document: documents.Document, function: Callable[[], T], *, first: bool = True
     ) -> T | None:
         """Returns a result from the solving thread; None if the document changed, or a newer asked."""
@@ -244,78 +244,12 @@ class Pictures:
         except Cancelled:
             return None
 
-    def _tell_status(self, document: documents.Document) -> None:
-        known = document.ran
-        outcome = known.view.outcome if known is not None else None
-        if known is None or outcome is None:
-            return
-        severities = [diagnostic.severity.value for diagnostic in outcome.diagnostics]
-        status = {
-            "uri": document.uri,
-            "version": known.version,
-            "status": outcome.status,
-            "degrees": outcome.model.degrees if outcome.model is not None else None,
-            "seconds": sum(outcome.timings.values()),
-            "problems": {"errors": severities.count("error"), "warnings": severities.count("warning")},
-        }
-        self.server.protocol.tell("aidl/status", status)
-
-
-def _written(asked: Asked, made: Preview, view: View) -> Json:
-    return Writer(view, asked.convert.uri_of).preview(made, asked.known.version)
-
-
-_LONGEST_WAIT = 30.0
-"""Most seconds to wait for an outcome: longer than a run may take."""
-
-
-def register_preview(server: Server) -> None:
-    requests = _Requests(server)
-    _answer(server, "aidl/preview", documents.Show, requests.preview)
-    _answer(server, "aidl/previewClose", documents.OfDocument, requests.close)
-    _answer(server, "aidl/try", documents.Try, requests.attempt)
-    _answer(server, "aidl/setKnob", documents.SetKnob, requests.set_knob)
-    _answer(server, "aidl/drag", documents.Drag, requests.drag)
-    _answer(server, "aidl/fix", documents.ApplyFix, requests.fix)
-    _answer(server, "aidl/export", documents.Export, requests.export)
-    _answer(server, "aidl/exports", documents.OfDocument, requests.exports)
-
-
-def _answer(server: Server, method: str, kind: type[T], answer: Callable[[T], Awaitable[Any]]) -> None:
-    async def handler(params: Any) -> Any:  # pygls takes no parameter that is typed as `object`
-        return await answer(documents.read(params, kind))
-
-    server.feature(method)(handler)
-
-
-class _Requests:
-    def __init__(self, server: Server) -> None:
-        self.server = server
-        self.pictures = Pictures(server)
-        self._numbers = count()
-        self._asked: Counter[tuple[str, str]] = Counter()
-        """How often a viewer of a document asked for what outdates its tries."""
-
-    async def preview(self, given: documents.Show) -> Json | None:
-        """Shows a document from now on."""
-        document = self.server.document(given.uri)
-        self._asked[given.uri, given.viewer] += 1
-        self.pictures.show(document, given)
-        self.server.runner.active = document
-        await document.until_solved(document.serial, _LONGEST_WAIT)
-        return await self.pictures.picture(document, given.viewer, next(self._numbers))
-
-    async def close(self, given: documents.OfDocument) -> None:
-        self._asked.pop((given.uri, given.viewer), None)
-        document = self.server.documents.get(given.uri)
-        if document is not None:
-            self.pictures.close(document, given.viewer)
-
     async def attempt(self, given: documents.Try) -> Json:
         """Returns the picture with other values of params, or with a point dragged; writes nothing."""
-        viewer = given.uri, given.viewer
-        asked_before = self._asked[viewer]
-        asked, document = await self._solved(given)
+        viewer = given.viewer
+        asked_before = self.server.document(given.uri).asked[viewer]
+        asked = await self._asked(given)
+        document = asked.document
 
         def view() -> View:
             if given.drag is not None:
@@ -324,13 +258,14 @@ class _Requests:
             return tried(asked.view, values, document.memory, limits, rests=given.rests)
 
         def picture() -> Json:
-            return self.pictures.tried(asked, document, view(), given.viewer)
+            shown, layers = view(), document.viewers.get(viewer, frozenset())
+            return _written(asked, preview(shown, layers, tried=True, known=document.handles), shown)
 
         def is_outdated() -> bool:
-            return self._asked[viewer] != asked_before
+            return document.asked[viewer] != asked_before
 
         try:
-            return await self._work(("try", *viewer), document, asked, picture, is_outdated)
+            return await self._work(("try", given.uri, viewer), asked, picture, is_outdated)
         except (AidlError, CannotError) as reason:
             raise JsonRpcException(_why(reason), FAILED) from None
 
@@ -342,7 +277,7 @@ class _Requests:
         return await self._edit(given, lambda view: drag(view, given.id, given.to).edits, "Drag")
 
     async def fix(self, given: documents.ApplyFix) -> Json:
-        asked, _ = await self._solved(given)
+        asked = await self._asked(given)
         found = asked.view.diagnostics
         fix = found[given.problem].fix if 0 <= given.problem < len(found) and given.fix == 0 else None
         if fix is None:
@@ -372,21 +307,18 @@ class _Requests:
     async def exports(self, given: documents.OfDocument) -> Json:
         return offered()
 
-    async def _solved(
-        self, given: documents.OfVersion | documents.ApplyFix
-    ) -> tuple[Asked, documents.Document]:
-        document, known = await self.server.solved_text(given.uri, _LONGEST_WAIT, given.version)
-        return self.server.asked_now(document, known), document
+    async def _asked(self, given: documents.OfVersion | documents.ApplyFix) -> Asked:
+        return self.server.asked_now(*await self.server.solved_text(given.uri, _LONGEST_WAIT, given.version))
 
     async def _work(
         self,
         key: tuple[str, ...],
-        document: documents.Document,
         asked: Asked,
         function: Callable[[], T],
         is_outdated: Callable[[], bool] = lambda: False,
     ) -> T:
         """Runs a function in the solving thread, unless the text changes or a newer request has the key."""
+        document = asked.document
 
         def is_unwanted() -> bool:
             return document.version != asked.known.version or not document.is_open or is_outdated()
@@ -400,11 +332,12 @@ class _Requests:
         self, given: documents.OfVersion, edits: Callable[[View], Sequence[Edit]], label: str
     ) -> Json:
         """Makes one edit of a document after the other: each on the text that the one before made."""
-        self._asked[given.uri, given.viewer] += 1
-        async with self.server.document(given.uri).editing:
-            asked, document = await self._solved(given)
+        document = self.server.document(given.uri)
+        document.asked[given.viewer] += 1
+        async with document.editing:
+            asked = await self._asked(given)
             try:
-                made = await self._work(("edit", given.uri), document, asked, lambda: edits(asked.view))
+                made = await self._work(("edit", given.uri), asked, lambda: edits(asked.view))
             except (AidlError, CannotError) as reason:
                 return _not_applied(_why(reason))
             return await self._apply(asked, made, label)
@@ -412,6 +345,10 @@ class _Requests:
     async def _apply(self, asked: Asked, edits: Sequence[Edit], label: str) -> Json:
         reason = await self.server.apply(asked, edits, label)
         return _not_applied(reason) if reason else {"applied": True}
+
+
+def _written(asked: Asked, made: Preview, view: View) -> Json:
+    return Writer(view, asked.convert.uri_of).preview(made, asked.known.version)
 
 
 def _worded(diagnostic: Diagnostic) -> str:

@@ -125,21 +125,15 @@ class Lane:
 
 # A run leaves tens of thousands of objects that hold each other. Python's collector would look for them in
 # the middle of the next run, and go through the library and everything else each time; here it does so in
-# the pauses, and what stays for good is put out of its sight. What a document stands for now is among that
-# and never stays for good, so this is done seldom, and undone when one is closed.
+# the pauses, and what was loaded is put out of its sight once. What documents stood for then is among that,
+# so all is looked through again when one is closed.
 
 _PAUSE = 0.05
 """Seconds without work after which nobody seems to wait."""
 _MOST = 100
 """Pieces of work after which it collects without a pause."""
-_LONG = 0.03
-"""Seconds of a collection that has gone through many permanent objects."""
 _RELEASED = 0.5
 """Seconds after which nothing is under way for a document that was closed."""
-_FREEZES = 3
-"""How often objects are put out of sight: after the library and the first questions have come."""
-_ROUNDS = 500
-"""Collections after which seemingly permanent objects are looked through again."""
 
 
 class Tidier:
@@ -148,7 +142,6 @@ class Tidier:
     def __init__(self, loop: asyncio.AbstractEventLoop, is_busy: Callable[[], bool]) -> None:
         self._loop, self._is_busy = loop, is_busy
         self._left = 0
-        self._rounds = self._freezes = 0
         self._planned: asyncio.TimerHandle | None = None
         gc.disable()
 
@@ -159,27 +152,16 @@ class Tidier:
         self._planned = self._loop.call_later(0 if self._left >= _MOST else _PAUSE, self._tidy)
 
     def _tidy(self) -> None:
-        if self._left < _MOST and self._is_busy():
-            return  # there is a note at the end of that
-        self._left = 0
-        self._rounds += 1
-        if self._rounds % _ROUNDS == 0:
+        if self._left >= _MOST or not self._is_busy():  # else there is a note at the end of that
+            self._left = 0
+            gc.collect()
+
+    def settle(self) -> None:
+        """Looks through everything, and puts what stays out of sight."""
+        if not gc.isenabled():  # else this is closed
             gc.unfreeze()
-            self._freezes = 0
-        began = time.perf_counter()
-        gc.collect()
-        if time.perf_counter() - began > _LONG and self._freezes < _FREEZES:
-            self._freezes += 1
+            gc.collect()
             gc.freeze()
-
-    def release(self) -> None:
-        """Has all looked through soon: much is of no use any more once what is under way has ended."""
-
-        def look_through() -> None:
-            self._rounds = -1
-            self.note()
-
-        self._loop.call_later(_RELEASED, look_through)
 
     def close(self) -> None:
         if self._planned is not None:
@@ -221,7 +203,8 @@ class Runner:
     def warm_up(self) -> None:
         """Loads what the first run and the first questions need while nobody waits for it."""
         self.solving.put("first run", lambda: run(_example()))
-        self.solving.put("first questions", _ask_something)
+        questions = self.solving.put("first questions", _ask_something)
+        questions.add_done_callback(lambda _: self._tidier.settle())
 
     def renew(self, document: Document, *, active: bool = False) -> None:
         """Checks and runs a document after a change of its text, or of one that it imports."""
@@ -258,7 +241,7 @@ class Runner:
         self.solving.drop(document)
         if self.active is document:
             self.active = None
-        self._tidier.release()
+        self._loop.call_later(_RELEASED, self._tidier.settle)
 
     def close(self) -> None:
         self._is_closing = True

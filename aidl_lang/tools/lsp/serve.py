@@ -22,7 +22,7 @@ from aidl_lang.tools.lsp.documents import Settings, path_of
 from aidl_lang.tools.lsp.navigation import register_appearance, register_navigation
 from aidl_lang.tools.lsp.preview import register_preview
 from aidl_lang.tools.lsp.running import LIMITS
-from aidl_lang.tools.lsp.server import Server
+from aidl_lang.tools.lsp.server import Apply, Server
 from aidl_lang.tools.lsp.writing import register_actions, register_hints, register_writing
 
 # --- Notifications of the client: folders, settings, files that have changed.
@@ -211,8 +211,8 @@ _LOST = 1
 """Exit code when the client disconnects without ending the session."""
 
 
-def make(limits: Limits = LIMITS) -> Server:
-    server = Server(limits)
+def make(limits: Limits = LIMITS, apply: Apply | None = None) -> Server:
+    server = Server(limits, apply)
     register_lifecycle(server)
     register_navigation(server)
     register_appearance(server)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import json
 import logging
-from collections.abc import Callable, Coroutine, Sequence
+from collections.abc import Awaitable, Callable, Coroutine, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any, TypeVar
@@ -134,13 +134,15 @@ class Protocol(LanguageServerProtocol):
 
 T = TypeVar("T")
 Answer = Callable[["Asked", Any], T]
+Apply = Callable[["Asked", Sequence[Edit], str], Awaitable[str]]
+"""Makes edits of a program under a title; returns why it cannot, or ""."""
 
 
 @record()
 class Asked:
-    """The immutable data from which a question is answered, away from the loop."""
+    """The data from which a question is answered, away from the loop."""
 
-    uri: str
+    document: documents.Document
     known: documents.VersionedView
     convert: documents.Converter
     settings: documents.Settings
@@ -149,28 +151,30 @@ class Asked:
     """tells whether the client has a capability"""
 
     @property
+    def uri(self) -> str:
+        return self.document.uri
+
+    @property
     def view(self) -> View:
         return self.known.view
 
 
 class Server(LanguageServer):
-    """`start` is called once, in the loop that serves it."""
+    """`start` is called once, in the loop that serves it; `apply` stands in for a client that edits."""
 
     protocol: Protocol
 
-    def __init__(self, limits: Limits = LIMITS) -> None:
+    def __init__(self, limits: Limits = LIMITS, apply: Apply | None = None) -> None:
         super().__init__("aidl", __version__, protocol_cls=Protocol, converter_factory=converter)
-        self.limits = limits
+        self.limits, self.apply = limits, apply or self._ask_to_apply
         self.documents = documents.Documents()
         self.open_files = Workspace()
         self.project = Project(self.open_files)
         self.settings = documents.Settings()
-        self.publisher = documents.Publisher(self.text_document_publish_diagnostics)
         self.answers = Lane("answering")
         self.searches = Lane("searching")
         self.sweeps = Lane("sweeping")
-        self.on_solved: list[Callable[[documents.Document], None]] = []
-        self.on_closed: list[Callable[[documents.Document], object]] = []
+        self.on_solved: list[Callable[[documents.Document, documents.VersionedView], None]] = []
         self.runner: Runner
         self._has_told_of_crash = False
         self._background: set[asyncio.Task[None]] = set()
@@ -235,9 +239,8 @@ class Server(LanguageServer):
         self.runner.forget(document)
         others = self.documents.at(document.path)
         self._keep_text(document.path, others[-1].text if others else None)
-        self.publisher.forget(document)
-        for listener in self.on_closed:
-            listener(document)
+        for file in document.told[1]:
+            self._tell_diagnostics(file)
 
     def _keep_text(self, path: Path, text: str | None) -> None:
         """Sets the text of a file; None for the one on disk. Others may be reading the table."""
@@ -253,12 +256,16 @@ class Server(LanguageServer):
             self._publish(document, document.newest)
 
     def solved(self, document: documents.Document) -> None:
-        """Takes note of a new outcome."""
-        if document.ran is None:
+        """Takes note of a new outcome. The client asks for hints again where it had them before."""
+        ran = document.ran
+        if ran is None:
             return
-        self._publish(document, document.ran)
+        self._publish(document, ran)
+        version, serial = document.hinted or (None, None)
+        if version == ran.version and serial != ran.serial:
+            self.refresh_hints()
         for listener in self.on_solved:
-            listener(document)
+            listener(document, ran)
 
     def crashed(self, error: BaseException) -> None:
         """Takes note of work that ended with an unexpected error."""
@@ -275,9 +282,27 @@ class Server(LanguageServer):
             self.crashed(error)
 
     def _publish(self, document: documents.Document, known: documents.VersionedView) -> None:
+        """Replaces the diagnostics of a program; does nothing if those before were of a newer text."""
+        last, before = document.told
+        if known.serial < last:
+            return
         convert = self.converter(known.view, document.uri)
-        found = documents.converted(known.view.diagnostics, convert, document.uri)
-        self.publisher.publish(document, known, list(found))
+        by_uri: dict[str, list[types.Diagnostic]] = {document.uri: []}
+        for uri, diagnostic in documents.converted(known.view.diagnostics, convert, document.uri):
+            by_uri.setdefault(uri, []).append(diagnostic)
+        document.told = known.serial, by_uri
+        self._tell_diagnostics(document.uri, known.version)
+        for uri in before | by_uri:
+            if uri != document.uri and before.get(uri) != by_uri.get(uri):
+                self._tell_diagnostics(uri)
+
+    def _tell_diagnostics(self, uri: str, version: int | None = None) -> None:
+        """Tells those that all open programs have in a file."""
+        said = [each for document in self.documents for each in document.told[1].get(uri, ())]
+        unique = {(repr(each.range), each.code, each.message): each for each in said}
+        self.text_document_publish_diagnostics(
+            types.PublishDiagnosticsParams(uri, list(unique.values()), version)
+        )
 
     # --- Questions ------------------------------------------------------------------------------
 
@@ -323,10 +348,9 @@ class Server(LanguageServer):
 
     def asked_now(self, document: documents.Document, known: documents.VersionedView) -> Asked:
         convert = self.converter(known.view, document.uri)
-        return Asked(document.uri, known, convert, self.settings, self.project, self.can)
+        return Asked(document, known, convert, self.settings, self.project, self.can)
 
-    async def apply(self, asked: Asked, edits: Sequence[Edit], label: str) -> str:
-        """Has the client make edits of a program; returns why it does not, or ""."""
+    async def _ask_to_apply(self, asked: Asked, edits: Sequence[Edit], label: str) -> str:
         params = types.ApplyWorkspaceEditParams(asked.convert.change(edits), label)
         answer = await self.workspace_apply_edit_async(params)
         return "" if answer.applied else answer.failure_reason or "the editor did not change the text"

@@ -36,88 +36,88 @@ _NOTHING = "there is nothing to try: the program must work as written, and have 
 _TITLE = "Trying the ends of the params, and what lies between"
 
 
-class Ends:
-    """The results by document, for the version asked about only."""
+async def _check(server: Server, uri: object) -> dict[str, Any]:
+    """Tries each param of a document at its ends; the document may not change meanwhile."""
+    document, known = await _workable(server, uri)
+    found = await _tried(server, document, known, lenses.tried)
+    document.tried = known.version, found
+    server.refresh_hints()
+    sweep, walks = found.sweep, walked(document.uri, found.ranges)
+    told = {"tried": described(sweep), "left": sweep.left, "seconds": sweep.seconds, "range": walks}
+    return told | {"ok": sweep.ok and found.ranges.ok}
 
-    def __init__(self, server: Server) -> None:
-        self._server = server
-        self._found: dict[str, tuple[int, lenses.Found]] = {}
-        server.on_closed.append(lambda document: self._found.pop(document.uri, None))
 
-    def of(self, uri: str, known: documents.VersionedView) -> lenses.Found | None:
-        version, found = self._found.get(uri, (None, None))
-        return found if version == known.version else None
+async def _walk(server: Server, given: documents.OfDocument) -> dict[str, Any]:
+    """Walks each param of a document, unless that was done for the lenses."""
+    document, known = await _workable(server, given.uri)
+    found = _known(document, known)
+    walks = found.ranges if found is not None else await _tried(server, document, known, lenses.between)
+    return walked(document.uri, walks) | {"summary": summary(walks)}
 
-    async def check(self, uri: object) -> dict[str, Any]:
-        """Tries each param of a document at its ends; the document may not change meanwhile."""
-        document, known = await self._workable(uri)
-        found = await self._asked(document, known, lenses.tried)
-        self._found[document.uri] = known.version, found
-        self._server.refresh_hints()
-        sweep, walks = found.sweep, walked(document.uri, found.ranges)
-        told = {"tried": described(sweep), "left": sweep.left, "seconds": sweep.seconds, "range": walks}
-        return told | {"ok": sweep.ok and found.ranges.ok}
 
-    async def walk(self, given: documents.OfDocument) -> dict[str, Any]:
-        """Walks each param of a document, unless that was done for the lenses."""
-        document, known = await self._workable(given.uri)
-        found = self.of(document.uri, known)
-        walks = found.ranges if found is not None else await self._asked(document, known, lenses.between)
-        return walked(document.uri, walks) | {"summary": summary(walks)}
+def _known(document: documents.Document, known: documents.VersionedView) -> lenses.Found | None:
+    """Returns what came of trying the params, of the version asked about only."""
+    version, found = document.tried or (None, None)
+    return found if version == known.version else None
 
-    async def _workable(self, uri: object) -> tuple[documents.Document, documents.VersionedView]:
-        """Returns a document as it was run, if its params can be tried."""
-        document, known = await self._server.solved_text(uri, _LONGEST)
-        if not lenses.can_be_tried(known.view):
-            raise JsonRpcException(_NOTHING, FAILED)
-        return document, known
 
-    async def _asked(
-        self, document: documents.Document, known: documents.VersionedView, function: Callable[..., T]
-    ) -> T:
-        """Returns what comes of trying. Raises JsonRpcContentModified if the text changes before."""
-        loop = asyncio.get_running_loop()
-        told = await self._progress()
+async def _workable(server: Server, uri: object) -> tuple[documents.Document, documents.VersionedView]:
+    """Returns a document as it was run, if its params can be tried."""
+    document, known = await server.solved_text(uri, _LONGEST)
+    if not lenses.can_be_tried(known.view):
+        raise JsonRpcException(_NOTHING, FAILED)
+    return document, known
 
-        def tell(done: int, count: int) -> None:
-            loop.call_soon_threadsafe(told, done, count)
 
-        work = partial(function, known.view, LIMITS, tell, _LONGEST)
-        task = loop.create_task(self._server.sweeps.ask(work))
-        try:
-            while not task.done():
-                await asyncio.wait([task], timeout=_PAUSE)
-                if document.version != known.version or not document.is_open:
-                    raise JsonRpcContentModified("the text has changed")
-            return task.result()
-        except Cancelled:
-            raise JsonRpcContentModified("the server is closing") from None
-        finally:
-            task.cancel()
-            told(0, 0)
+async def _tried(
+    server: Server,
+    document: documents.Document,
+    known: documents.VersionedView,
+    function: Callable[..., T],
+) -> T:
+    """Returns what comes of trying. Raises JsonRpcContentModified if the text changes before."""
+    loop = asyncio.get_running_loop()
+    told = await _progress(server)
 
-    async def _progress(self) -> Callable[[int, int], None]:
-        """Returns a function that shows a client how many ends are done; `told(0, 0)` ends it."""
-        server = self._server
-        if not server.can("window.work_done_progress"):
-            return lambda done, count: None
-        token = str(uuid4())
-        await server.work_done_progress.create_async(token)
-        server.work_done_progress.begin(token, types.WorkDoneProgressBegin(_TITLE, percentage=0))
-        is_over = False
+    def tell(done: int, count: int) -> None:
+        loop.call_soon_threadsafe(told, done, count)
 
-        def told(done: int, count: int) -> None:
-            nonlocal is_over
-            if is_over:
-                return
-            if is_over := not count:
-                server.work_done_progress.end(token, types.WorkDoneProgressEnd())
-                return
-            share = 100 * done // count
-            report = types.WorkDoneProgressReport(message=f"{done} of {count}", percentage=share)
-            server.work_done_progress.report(token, report)
+    work = partial(function, known.view, LIMITS, tell, _LONGEST)
+    task = loop.create_task(server.sweeps.ask(work))
+    try:
+        while not task.done():
+            await asyncio.wait([task], timeout=_PAUSE)
+            if document.version != known.version or not document.is_open:
+                raise JsonRpcContentModified("the text has changed")
+        return task.result()
+    except Cancelled:
+        raise JsonRpcContentModified("the server is closing") from None
+    finally:
+        task.cancel()
+        told(0, 0)
 
-        return told
+
+async def _progress(server: Server) -> Callable[[int, int], None]:
+    """Returns a function that shows a client how many ends are done; `told(0, 0)` ends it."""
+    if not server.can("window.work_done_progress"):
+        return lambda done, count: None
+    token = str(uuid4())
+    await server.work_done_progress.create_async(token)
+    server.work_done_progress.begin(token, types.WorkDoneProgressBegin(_TITLE, percentage=0))
+    is_over = False
+
+    def told(done: int, count: int) -> None:
+        nonlocal is_over
+        if is_over:
+            return
+        if is_over := not count:
+            server.work_done_progress.end(token, types.WorkDoneProgressEnd())
+            return
+        share = 100 * done // count
+        report = types.WorkDoneProgressReport(message=f"{done} of {count}", percentage=share)
+        server.work_done_progress.report(token, report)
+
+    return told
 
 
 # --- Inlay hints and code lenses, which depend on the solution.
@@ -129,24 +129,22 @@ _OPEN_PREVIEW = "aidl.openPreview"
 
 
 def register_hints(server: Server) -> None:
-    answered, ends = _Answered(server), Ends(server)
-
     @server.command(CHECK_ENDS)
     async def check_ends(*arguments: Any) -> dict[str, Any]:
         """Try the ends of all params of a document, which is the argument."""
-        return await ends.check(arguments[0] if arguments else None)
+        return await _check(server, arguments[0] if arguments else None)
 
     @server.feature("aidl/ranges")
     async def walk(params: Any) -> dict[str, Any]:
-        return await ends.walk(documents.read(params, documents.OfDocument))
+        return await _walk(server, documents.read(params, documents.OfDocument))
 
     @server.answers_to(types.TEXT_DOCUMENT_CODE_LENS, types.CodeLensOptions(), patience=_PATIENCE)
     def lens(asked: Asked, params: types.CodeLensParams) -> list[types.CodeLens]:
-        answered.note(asked)
+        _note(asked)
         if not asked.settings.lenses:
             return []
         found = [(_OPEN_PREVIEW, each) for each in lenses.lenses(asked.view)]
-        at_ends = lenses.end_lenses(asked.view, ends.of(asked.uri, asked.known))
+        at_ends = lenses.end_lenses(asked.view, _known(asked.document, asked.known))
         found += [(CHECK_ENDS, each) for each in at_ends]
         return [
             types.CodeLens(asked.convert.range(span), types.Command(title, command, arguments=[asked.uri]))
@@ -155,30 +153,16 @@ def register_hints(server: Server) -> None:
 
     @server.answers_to(types.TEXT_DOCUMENT_INLAY_HINT, types.InlayHintOptions(), patience=_PATIENCE)
     def inlay(asked: Asked, params: types.InlayHintParams) -> list[types.InlayHint]:
-        answered.note(asked)
+        _note(asked)
         shows = {True: asked.settings.readings, False: asked.settings.solved_values}
         found = lenses.inlays(asked.view, asked.convert.span(params.range))
         return [_hint(each, asked) for each in found if shows[each.is_reading]]
 
 
-class _Answered:
-    """The answers given to the client, which asks again when there are more for the same text."""
-
-    def __init__(self, server: Server) -> None:
-        self._server = server
-        self._told: dict[str, tuple[int, int | None]] = {}
-        """By document, the version that was told of, and the serial of its outcome."""
-        server.on_solved.append(self._solved)
-        server.on_closed.append(lambda document: self._told.pop(document.uri, None))
-
-    def note(self, asked: Asked) -> None:
-        known = asked.known
-        self._told[asked.uri] = known.version, known.serial if known.view.outcome is not None else None
-
-    def _solved(self, document: documents.Document) -> None:
-        told, ran = self._told.get(document.uri), document.ran
-        if told is not None and ran is not None and told[0] == ran.version and told[1] != ran.serial:
-            self._server.refresh_hints()
+def _note(asked: Asked) -> None:
+    """Takes note of what the client is told, which asks again when there is more for the same text."""
+    known = asked.known
+    asked.document.hinted = known.version, known.serial if known.view.outcome is not None else None
 
 
 def _hint(inlay: lenses.Inlay, asked: Asked) -> types.InlayHint:
@@ -310,19 +294,18 @@ _HOVER_PATIENCE = 0.3
 
 
 def register_writing(server: Server) -> None:
-    lists = _Lists()
     triggers = [".", "@", "(", '"']
     options = types.CompletionOptions(trigger_characters=triggers, resolve_provider=True)
-    server.answers_to(types.TEXT_DOCUMENT_COMPLETION, options)(lists.complete)
-    server.on_closed.append(lambda document: lists.last.pop(document.uri, None))
+    server.answers_to(types.TEXT_DOCUMENT_COMPLETION, options)(_complete)
 
     @server.feature(types.COMPLETION_ITEM_RESOLVE)
     async def resolve(item: types.CompletionItem) -> types.CompletionItem:
         if item.data is not None:
             given = documents.read(item.data, documents.EntryRequest)
-            chosen = lists.find(given.uri, given.list, given.entry)
-            if chosen is not None:
-                said = await server.answers.ask(lambda: chosen.documentation)
+            document = server.documents.get(given.uri)
+            number, found = document.listed if document is not None else (0, [])
+            if given.list == number and 0 <= given.entry < len(found):
+                said = await server.answers.ask(lambda: found[given.entry].documentation)
                 item.documentation = _markdown(said) if said else None
         return item
 
@@ -345,29 +328,19 @@ def register_writing(server: Server) -> None:
         )
 
 
-class _Lists:
-    """The last list of each document: the documentation of an entry is made on demand."""
-
-    def __init__(self) -> None:
-        self.last: dict[str, tuple[int, list[Completion]]] = {}
-
-    def complete(self, asked: Asked, params: types.CompletionParams) -> types.CompletionList:
-        offset = asked.convert.offset(params.position)
-        found = complete(asked.view, offset, asked.project.workspace.programs)
-        number = self.last.get(asked.uri, (0, []))[0] + 1
-        self.last[asked.uri] = number, found
-        snippets = asked.can("text_document.completion.completion_item.snippet_support")
-        return types.CompletionList(
-            is_incomplete=len(found) >= MOST,
-            items=[
-                _item(each, asked, snippets, {"uri": asked.uri, "list": number, "entry": index})
-                for index, each in enumerate(found)
-            ],
-        )
-
-    def find(self, uri: str, number: int, entry: int) -> Completion | None:
-        known, found = self.last.get(uri, (0, []))
-        return found[entry] if known == number and 0 <= entry < len(found) else None
+def _complete(asked: Asked, params: types.CompletionParams) -> types.CompletionList:
+    """Lists completions, and keeps the list: the documentation of an entry is made on demand."""
+    found = complete(asked.view, asked.convert.offset(params.position), asked.project.workspace.programs)
+    number = asked.document.listed[0] + 1
+    asked.document.listed = number, found
+    snippets = asked.can("text_document.completion.completion_item.snippet_support")
+    return types.CompletionList(
+        is_incomplete=len(found) >= MOST,
+        items=[
+            _item(each, asked, snippets, {"uri": asked.uri, "list": number, "entry": index})
+            for index, each in enumerate(found)
+        ],
+    )
 
 
 def _item(each: Completion, asked: Asked, snippets: bool, data: dict[str, object]) -> types.CompletionItem:

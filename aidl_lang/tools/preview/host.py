@@ -172,8 +172,7 @@ class Host:
         self.text = Manuscript(path, write)
         self.uri = path.as_uri()
         self.pages: list[Page] = []
-        self.server = make(SETTINGS)
-        self.server.apply = self._apply  # type: ignore[method-assign]  # no client does it
+        self.server = make(SETTINGS, self._apply)
         self._gone = Page()
         """carries out the edits of pages that left"""
         self._version = 0

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping
 
-from aidl_lang.tools.highlighting.classes import called
+from aidl_lang.tools.highlighting import called
 from aidl_lang.tools.reference.collect import reference
 from aidl_lang.tools.vocabulary import SNIPPETS, vocabulary
 

@@ -13,7 +13,7 @@ from aidl_dev.highlighting.codemirror import words
 from aidl_dev.highlighting.scopes import SCOPES
 from aidl_dev.highlighting.textmate import grammar, markdown
 from aidl_dev.highlighting.tree_sitter import queries
-from aidl_lang.tools.highlighting.classes import classify
+from aidl_lang.tools.highlighting import classify
 from aidl_lang.tools.vocabulary import SNIPPETS
 
 SAMPLES = "tests/editors/classes.json"

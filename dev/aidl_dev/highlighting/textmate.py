@@ -11,7 +11,7 @@ import re
 from collections.abc import Iterable
 
 from aidl_dev.highlighting.scopes import Rule, include, match, region
-from aidl_lang.tools.highlighting.classes import called
+from aidl_lang.tools.highlighting import called
 from aidl_lang.tools.vocabulary import vocabulary
 
 _WORDS = vocabulary()

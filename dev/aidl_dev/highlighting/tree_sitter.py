@@ -10,7 +10,7 @@ import json
 from collections.abc import Iterable, Iterator, Mapping
 
 from aidl_dev.highlighting.scopes import HELIX, NEOVIM
-from aidl_lang.tools.highlighting.classes import called, fixed_classes
+from aidl_lang.tools.highlighting import called, fixed_classes
 from aidl_lang.tools.vocabulary import vocabulary
 
 FOLDER = "editors/tree-sitter-aidl/queries"

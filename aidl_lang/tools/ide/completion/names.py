@@ -144,18 +144,18 @@ def _call_tier(context: Context, signatures: Sequence[Signature], makes: bool) -
 
 def result_type(context: Context, signature: Signature) -> Type:
     """Returns the result type of a callable, as far as it is the same for all arguments."""
-    if signature.kind is None:
-        return builtins.RESULTS.get(signature.name, ANY)
-    if signature.kind is ast.ShapeDefinition:
-        return GeometryType(signature.name)
-    if signature.kind is ast.Structure:
-        return StructureType()
-    if signature.kind is ast.ConstraintDefinition:
-        return TruthType()
-    node = signature.node
-    if not signature.standard or not isinstance(node, ast.FunctionDefinition):
-        return ANY
-    return result(context.view.program.inference, node)[0].type
+    match signature.kind:
+        case None:
+            return builtins.RESULTS.get(signature.name, ANY)
+        case ast.ShapeDefinition:
+            return GeometryType(signature.name)
+        case ast.Structure:
+            return StructureType()
+        case ast.ConstraintDefinition:
+            return TruthType()
+    if signature.standard and isinstance(signature.node, ast.FunctionDefinition):
+        return result(context.view.program.inference, signature.node)[0].type
+    return ANY
 
 
 def call(
@@ -185,18 +185,18 @@ def brief(signatures: Sequence[Signature]) -> str:
     return f"({', '.join(names)}){more}"
 
 
+_KINDS = {
+    ast.ShapeDefinition: SymbolKind.SHAPE,
+    ast.ConstraintDefinition: SymbolKind.CONSTRAINT,
+    ast.Structure: SymbolKind.TEMPLATE,
+}
+
+
 def kind_of(signature: Signature) -> SymbolKind:
-    match signature.kind:
-        case ast.ShapeDefinition:
-            return SymbolKind.SHAPE
-        case ast.ConstraintDefinition:
-            return SymbolKind.CONSTRAINT
-        case ast.Structure:
-            return SymbolKind.TEMPLATE
-        case None if isinstance(builtins.RESULTS.get(signature.name), GeometryType):
-            return SymbolKind.SHAPE
-        case _:
-            return SymbolKind.FUNCTION
+    if signature.kind is None:
+        is_shape = isinstance(builtins.RESULTS.get(signature.name), GeometryType)
+        return SymbolKind.SHAPE if is_shape else SymbolKind.FUNCTION
+    return _KINDS.get(signature.kind, SymbolKind.FUNCTION)
 
 
 # --- Completion of definitions in other files of the workspace, each with its import.

@@ -8,7 +8,6 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from collections.abc import Set as AbstractSet
 from dataclasses import field, replace
 from functools import cached_property, lru_cache, partial
-from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,7 +31,7 @@ from aidl_lang.tools.ide.guesses import Guess, guesses, is_same
 from aidl_lang.tools.ide.references import CannotError
 from aidl_lang.tools.ide.workspace import Solved, View, edited, hasty, run
 
-# --- Points that follow a `param`: found by turning each param a little; the value wanted by a secant.
+# --- Points that follow a `param`: found by turning each param a little; the values wanted by secants.
 
 MOST_KNOBS = 12
 _SECONDS = 0.6
@@ -43,38 +42,21 @@ _FOLLOWS = 1e-2
 """Least motion of a point that follows a param, mm per unit."""
 _LAZY = 0.1
 """Motion per unit, mm, at which a param is preferred half as much as one with a large effect."""
-_ROUNDS = 3
+_ROUNDS = 5
 _BESIDE = 0.3
 """Sine of the least angle between the ways of two params that count as different."""
-
-_KEPT = 16
-"""Most values of params whose places are kept for the next step of a drag."""
-Values: TypeAlias = frozenset[tuple[str, float]]
-"""Values of params by their paths."""
 
 
 def turned(view: View, grip: str, to: Vec, step: float) -> tuple[View, Vec, tuple[Edit, ...]]:
     """Returns the program with one or two params changed, the point, and the edits of their defaults."""
-    ways, tries = dict(slopes(view).get(grip, {})), _tries(view)
-    values: dict[str, float] = {}
-    at = _places(view).get(grip)
-    for _ in range(2):
-        if at is None or not ways or math.dist(at, to) <= step:
-            break
-        wanted = to[0] - at[0], to[1] - at[1]
-        best = max(ways, key=lambda path: _promise(tries.knobs[path], wanted, ways[path]))
-        way = ways.pop(best)
-        value = tries.value(grip, best, values, to, way, step)
-        if value is not None:
-            values[best] = value
-            at = tries.place(grip, values)
-            ways = {path: other for path, other in ways.items() if _is_beside(other, way)}
+    tries = _tries(view)
+    values = tries.values(grip, to, step)
     shown = tries.run(values)
     at = _places(shown).get(grip)
     if at is None:
         raise CannotError("the program does not solve with the param turned that far")
     known = ((tries.knobs[path], value) for path, value in values.items())
-    found = ((knob, _declaration(view, knob), value) for knob, value in known)
+    found = ((knob, _declaration(view, knob), value) for knob, value in known if value != knob.value)
     try:
         edits = tuple(edit_at(knob, node, value) for knob, node, value in found if node is not None)
     except RefusalError as refused:
@@ -94,11 +76,14 @@ def slopes(view: View) -> Mapping[str, Mapping[str, Vec]]:
         if time.monotonic() > until:
             break
         nudge = _nudge(knob)
-        for name, at in _turned(view, {knob.path: float(knob.value) + nudge}).items():
-            if name in before:
-                x, y = ((b - a) / nudge for a, b in zip(before[name], at, strict=True))
+        params = {**(view.params or {}), knob.path: float(knob.value) + nudge}
+        if (placed := pipeline.placed(view.program, params)) is None:
+            continue
+        for grip in mobility.grips(placed[0]):
+            if grip.id in before:
+                x, y = ((b - a) / nudge for a, b in zip(before[grip.id], grip.at(placed[1]), strict=True))
                 if is_somewhere((x, y)) and math.hypot(x, y) > _FOLLOWS:
-                    found.setdefault(name, {})[knob.path] = x, y
+                    found.setdefault(grip.id, {})[knob.path] = x, y
     return found
 
 
@@ -127,75 +112,61 @@ def _places(view: View) -> dict[str, Vec]:
     return {grip.id: grip.at(solved.evaluate) for grip in mobility.grips(solved.built)}
 
 
-def _turned(view: View, values: Mapping[str, float]) -> dict[str, Vec]:
-    """Returns all points with other values of params; none if that does not solve."""
-    found = pipeline.placed(view.program, {**(view.params or {}), **values})
-    return {} if found is None else {grip.id: grip.at(found[1]) for grip in mobility.grips(found[0])}
-
-
 class _Tries:
-    """Runs of a view with other params. The last ones are kept: a drag begins each step at the nearest."""
+    """Runs of a view with other params. A drag begins each step where the one before has ended."""
 
     def __init__(self, view: View) -> None:
         self.view = view
         self.knobs = {knob.path: knob for knob in reversed(view.knobs)}
-        self._shown: dict[Values, View] = {}
-        self._places: dict[Values, Mapping[str, Vec]] = {}
+        self._shown: tuple[Mapping[str, float], View] = {}, view
+        self._ended: dict[tuple[str, ...], Mapping[str, float]] = {}
+        """the last values, by the point and the params that it followed"""
 
     def run(self, values: Mapping[str, float]) -> View:
-        key = frozenset(values.items())
-        if key not in self._shown:
-            shown = run(self.view, self.view, params={**(self.view.params or {}), **values}, settings=hasty())
-            self._shown = {key: shown}
-        return self._shown[key]
+        changed = {path: value for path, value in values.items() if value != self.knobs[path].value}
+        if changed != self._shown[0]:
+            params = {**(self.view.params or {}), **changed}
+            self._shown = changed, run(self.view, self.view, params=params, settings=hasty())
+        return self._shown[1]
 
-    def place(self, grip: str, values: Mapping[str, float], *, likely: bool = False) -> Vec | None:
-        """Returns a point's place with these values, None if unsolved. `likely` ones will be shown."""
-        key = frozenset(values.items())
-        if key not in self._places:
-            is_shown = likely or key in self._shown
-            found = _places(self.run(values)) if is_shown else _turned(self.view, values)
-            self._places = {**dict(list(self._places.items())[1 - _KEPT :]), key: found}
-        return self._places[key].get(grip)
-
-    def nearest(self, grip: str, path: str, values: Mapping[str, float], to: Vec) -> tuple[float, Vec] | None:
-        """Returns the value of a param, beside others, that brought a point nearest to a place; and where."""
-        beside = frozenset((other, value) for other, value in values.items() if other != path)
-        known = [
-            (value, at)
-            for key, places in self._places.items()
-            if (at := places.get(grip)) is not None and beside <= key and len(key) == len(beside) + 1
-            for name, value in key - beside
-            if name == path
-        ]
-        return min(known, key=lambda each: math.dist(each[1], to), default=None)
-
-    def value(
-        self, grip: str, path: str, values: Mapping[str, float], to: Vec, way: Vec, step: float
-    ) -> float | None:
-        """Returns the value that brings a point nearest to a place along its way; None if no other solves."""
-        knob, slope = self.knobs[path], math.hypot(*way)
-        value, best = float(knob.value), None
-        at = self.place(grip, values) if values else _places(self.view).get(grip)
-        if (known := self.nearest(grip, path, values, to)) is not None:
-            value, at = known
-            best = value
+    def values(self, grip: str, to: Vec, step: float) -> dict[str, float]:
+        """Returns the values of one or two params that bring a point nearest to a place."""
+        at = _places(self.view).get(grip)
+        paths = list(self._leading(grip, at, to)) if at is not None else []
+        if at is None or not paths:
+            return {}
+        knobs = [self.knobs[path] for path in paths]
+        values = np.array([float(knob.value) for knob in knobs])
+        slope = np.array([slopes(self.view)[grip][path] for path in paths]).T
+        last = self._ended.get((grip, *paths))
+        if last is not None and (there := _places(self.run(last)).get(grip)) is not None:
+            values, at = np.array([last[path] for path in paths]), there
         for _ in range(_ROUNDS):
-            if at is None:
+            off = np.subtract(to, at)
+            change = np.linalg.lstsq(slope, off, rcond=None)[0]
+            if np.linalg.norm(slope @ change) <= step:
                 break
-            off = _along((to[0] - at[0], to[1] - at[1]), way)
-            if best is not None and abs(off) <= step:
+            fine = step / np.maximum(np.linalg.norm(slope, axis=0), _FOLLOWS)
+            aims = zip(knobs, (values + change).tolist(), fine.tolist(), strict=True)
+            aimed = np.array([_rounded(knob, _clamped(knob, value), by) for knob, value, by in aims])
+            if (aimed == values).all():
                 break
-            aimed = _rounded(knob, _clamped(knob, value + off / slope), step / slope)
-            if aimed == value:
+            there = _places(self.run(dict(zip(paths, aimed.tolist(), strict=True)))).get(grip)
+            if there is None:
                 break
-            before, value = (value, at), aimed
-            at = self.place(grip, {**values, path: value}, likely=best is not None)
-            if at is not None:
-                best = value
-                gone = _along((at[0] - before[1][0], at[1] - before[1][1]), way)
-                slope = gone / (value - before[0]) if abs(gone) > _FOLLOWS * abs(value - before[0]) else slope
-        return None if best == float(knob.value) else best
+            gone = aimed - values
+            slope = slope + np.outer(np.subtract(there, at) - slope @ gone, gone) / (gone @ gone)
+            values, at = aimed, there
+        self._ended[grip, *paths] = dict(zip(paths, values.tolist(), strict=True))
+        return dict(self._ended[grip, *paths])
+
+    def _leading(self, grip: str, at: Vec, to: Vec) -> Iterator[str]:
+        """Yields the params that can move a point most, the second in another direction than the first."""
+        ways, wanted = slopes(self.view).get(grip, {}), (to[0] - at[0], to[1] - at[1])
+        by_promise = sorted(ways, key=lambda path: -_promise(self.knobs[path], wanted, ways[path]))
+        for path in by_promise[:1]:
+            yield path
+            yield from [other for other in by_promise if _is_beside(ways[other], ways[path])][:1]
 
 
 _tries = lru_cache(maxsize=4)(_Tries)

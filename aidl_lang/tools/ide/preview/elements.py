@@ -264,9 +264,10 @@ class Elements:
         self.number: Mapping[str, int] = {
             each.element.path: k for k, each in reversed(list(enumerate(self.drawn)))
         }
-        self._of_span: dict[Span | None, list[int]] = defaultdict(list)
+        self.of_span: dict[Span | None, list[int]] = defaultdict(list)
+        """those written in a place, including copies and turns of loops"""
         for k, element in enumerate(self.values):
-            self._of_span[element.span].append(k)
+            self.of_span[element.span].append(k)
 
     def near(self, path: str) -> int | None:
         """Returns the element at a path, or the innermost one around it."""
@@ -279,10 +280,6 @@ class Elements:
     def all_near(self, paths: Iterable[str]) -> list[int]:
         """Returns the elements at or around these paths, each once."""
         return list(dict.fromkeys(k for path in paths if (k := self.near(path)) is not None))
-
-    def written_at(self, span: Span) -> list[int]:
-        """Returns the elements written in exactly this place, including copies and turns of loops."""
-        return self._of_span.get(span, [])
 
 
 def elements(view: View) -> Elements:
@@ -415,9 +412,10 @@ def set_knob(view: View, path: str, value: Value) -> list[Edit]:
     if not _is_literal(declared.value):
         written = declared.value.span.one_line
         raise refusal("E0945", f"`{knob.path}` is worked out, as `{written}`; change what it is made of")
-    _require_allowed(knob, _worked_out(knob, value))
+    worth = _worth(knob, value)
+    _require_allowed(knob, value if worth is None else worth)
     edits = [workspace.edit_at(knob, declared, value)]
-    if _is_typed(knob, value):
+    if worth is not None:
         _require_sense(view, edits)
     return edits
 
@@ -426,29 +424,34 @@ def worked_out(view: View, values: Mapping[str, Value]) -> dict[str, Value]:
     """Returns values of params with texts for numbers worked out. Raises RefusalError for an invalid one."""
     found = dict(values)
     for path, value in values.items():
-        if isinstance(value, str) and _is_typed(knob := workspace.find(view.knobs, path), value):
-            found[path] = _worked_out(knob, value)
-            _require_allowed(knob, found[path])
+        if (
+            isinstance(value, str)
+            and (worth := _worth(knob := workspace.find(view.knobs, path), value)) is not None
+        ):
+            _require_allowed(knob, worth)
+            found[path] = worth
     return found
 
 
-def _is_typed(knob: Knob, value: Value) -> bool:
-    return isinstance(value, str) and _kind(knob) in ("number", "choice") and not isinstance(knob.value, str)
-
-
-def _worked_out(knob: Knob, value: Value) -> Value:
-    return workspace.typed(knob, value).value if isinstance(value, str) and _is_typed(knob, value) else value
+def _worth(knob: Knob, value: Value) -> float | None:
+    """Returns the number that a text means for a param that is one; None for others. Raises RefusalError."""
+    is_number = _kind(knob) in ("number", "choice") and not isinstance(knob.value, str)
+    return workspace.typed(knob, value).value if is_number and isinstance(value, str) else None
 
 
 def _require_allowed(knob: Knob, value: Value) -> None:
-    if _is_allowed(knob, value):
-        return
-    said = f"{value:.6g}" if isinstance(value, float) else str(value)
-    why = "none of its choices"
-    if knob.range is not None:
+    if knob.choices:
+        is_allowed, why = value in knob.choices, "none of its choices"
+    elif knob.range is None or not isinstance(value, float | int):
+        return  # what does not fit at all is told by what writes it
+    else:
         low, high = knob.range
+        slack = _SLACK * max(1.0, abs(low), abs(high))
+        is_allowed = math.isfinite(value) and low - slack <= value <= high + slack
         why = f"outside its range {low:.6g}..{high:.6g}" + (f" {knob.unit}" if knob.unit else "")
-    raise refusal("E0945", f"`{knob.path}` cannot be `{said}`: that is {why}")
+    if not is_allowed:
+        said = f"{value:.6g}" if isinstance(value, float) else str(value)
+        raise refusal("E0945", f"`{knob.path}` cannot be `{said}`: that is {why}")
 
 
 def _require_sense(view: View, edits: list[Edit]) -> None:
@@ -471,16 +474,6 @@ def _kind(knob: Knob) -> str:
     if knob.choices:
         return "choice"
     return "text" if isinstance(knob.value, str) else "number"
-
-
-def _is_allowed(knob: Knob, value: Value) -> bool:
-    if knob.choices:
-        return value in knob.choices
-    if not isinstance(value, float | int) or knob.range is None:
-        return True  # what does not fit at all is told by what writes it
-    low, high = knob.range
-    slack = _SLACK * max(1.0, abs(low), abs(high))
-    return math.isfinite(value) and low - slack <= value <= high + slack
 
 
 # --- Problems on the drawing, each with its elements and points.
@@ -539,7 +532,7 @@ class _Finder:
         it names what is beside them.
         """
         spans = [s for s in (found.span, *(label.span for label in found.secondary)) if s is not None]
-        here = [k for span in spans for k in self.elements.written_at(span) or self.related(span)]
+        here = [k for span in spans for k in self.elements.of_span.get(span) or self.related(span)]
         quoted = set(_QUOTED.findall(found.message.partition(";")[0]))
         named = [k for k in here if self.elements.values[k].path in quoted]
         return list(dict.fromkeys(named or here))

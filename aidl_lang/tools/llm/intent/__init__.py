@@ -12,7 +12,7 @@ from aidl_lang.common.source import SourceFile
 from aidl_lang.common.world import World
 from aidl_lang.pipeline import Compiled, Settings, front
 from aidl_lang.tools.llm.intent.changes import Changes, Fate, compare, strength
-from aidl_lang.tools.llm.intent.inventory import Inventory, Item, Kind, Path, inventory, names_in, unnumbered
+from aidl_lang.tools.llm.intent.inventory import Inventory, Item, Kind, Path, inventory, names_in
 from aidl_lang.tools.llm.intent.placing import UNTRIED, Finding, Prober, State, dotted, new_errors, stands
 
 # --- A loss of a conversation.
@@ -22,25 +22,29 @@ from aidl_lang.tools.llm.intent.placing import UNTRIED, Finding, Prober, State, 
 class Loss:
     """An intent of an earlier program that the present one lacks.
 
-    item        the lost item, and `inventory` that of its program
-    fate        gone, fewer, weakened to a wish or a check, or rewritten to something that says less
-    now         its replacement, if any
+    item        the lost item
+    changes     from its program to the present one
     finding     whether it would fit again, and its conflicts
     dependents  for structures and geometry: the items that mentioned them and went with them
-    counts      for something that is fewer now: the former and the present number
     """
 
     item: Item
-    inventory: Inventory
-    fate: Fate
-    now: Item | None = None
+    changes: Changes
     finding: Finding = UNTRIED
     dependents: tuple[Item, ...] = ()
-    counts: tuple[int, int] = (0, 0)
 
     @property
     def kind(self) -> Kind:
         return self.item.kind
+
+    @property
+    def fate(self) -> Fate:
+        return self.changes.fates[self.item][0]
+
+    @property
+    def now(self) -> Item | None:
+        """Its replacement, if any."""
+        return self.changes.fates[self.item][1]
 
     @property
     def is_doubtful(self) -> bool:
@@ -50,11 +54,12 @@ class Loss:
     @property
     def phrase(self) -> str:
         """The loss in a sentence without its full stop."""
-        if self.fate is Fate.FEWER:
-            many, few = self.counts
+        before, after = self.changes.before, self.changes.after
+        if self.fate is Fate.FEWER and self.now is not None:
+            many, few = before.count(self.item), after.count(self.now)
             fewer = f"{many} `{dotted(self.item.thing)}` became {few}"
             return f"{fewer}: unless fewer are meant, make as many again"
-        words = f"{named(self.item, self.inventory)} {_fate(self)}"
+        words = f"{named(self.item, before)} {_fate(self)}"
         if self.dependents:
             words += f", and with it {listed([quoted(item.text) for item in self.dependents], _TOLD)}"
         reason = _reason(self)
@@ -190,7 +195,7 @@ class Ledger:
         """Notes a program, and its outcome (None if it was not compiled)."""
         here = self.inventory(source, compiled)
         prober = Prober(self._world, self._settings, _PROBES, self._clashed)
-        self._known = tuple(_probed(loss, c, prober, compiled) for loss, c in self.losses(here, compiled))
+        self._known = tuple(_probed(loss, prober, compiled) for loss in self.losses(here, compiled))
         self._text = source.text
         accepted = {k.item for k in self._known if not _counts(k) and k.finding.state is not State.UNTRIED}
         for before, last in self._noted:
@@ -217,22 +222,19 @@ class Ledger:
             return inventory(program.resolution, found)
         return inventory(program.resolution, compiled.diagnostics, compiled.model)
 
-    def losses(self, here: Inventory, compiled: Compiled | None) -> Iterator[tuple[Loss, Changes]]:
-        """Yields items of noted programs that another lacks, with the changes since."""
-        reports: list[tuple[Loss, Changes]] = []
-        for before, last in self._noted:
-            changes = compare(before, here)
-            reports += ((loss, changes) for loss in _losses(last, changes))
-        items = {loss.item for loss, _ in reports}
+    def losses(self, here: Inventory, compiled: Compiled | None) -> Iterator[Loss]:
+        """Yields items of noted programs that another lacks."""
+        lost = [loss for before, last in self._noted for loss in _losses(last, compare(before, here))]
+        items = {loss.item for loss in lost}
         heirs = {item: heir for _, last in self._noted for item, heir in last.items()}
         unread = compiled is None or any(d.code.startswith(_UNREAD) for d in compiled.diagnostics)
         text = _squeezed(here.source.text) if unread else ""
         # of a lost statement and its lost replacement the older is left out, or a wish
         both = ((item, heir) for item in items if (heir := heirs[item]) is not None and heir in items)
         twice = {heir if strength(heir) < strength(item) else item for item, heir in both}
-        for loss, changes in reports:
+        for loss in lost:
             if loss.item not in twice and not (unread and _mark(loss.item) in text):
-                yield loss, changes
+                yield loss
 
 
 def _losses(last: Collection[Item], changes: Changes) -> Iterator[Loss]:
@@ -260,20 +262,7 @@ def _losses(last: Collection[Item], changes: Changes) -> Iterator[Loss]:
             dependents.setdefault(owner, []).append(item)
         else:
             told.append(item)
-    for item in told:
-        fate, now = changes.fates[item]
-        yield Loss(
-            item,
-            changes.before,
-            fate,
-            now,
-            dependents=tuple(dependents.get(item, ())),
-            counts=(_count(changes.before, item), _count(changes.after, now)),
-        )
-
-
-def _count(inventory: Inventory, item: Item | None) -> int:
-    return inventory.counts[unnumbered(item.thing)] if item is not None else 0
+    yield from (Loss(item, changes, dependents=tuple(dependents.get(item, ()))) for item in told)
 
 
 def _is_missing(item: Item, fate: Fate, now: Item | None) -> bool:
@@ -292,7 +281,7 @@ def _is_there(item: Item, fate: Fate, accepted: set[Item]) -> bool:
     """True if the meaning of an item need not be looked for any more."""
     if fate is Fate.REWRITTEN:
         return item.wrong or item in accepted or item.kind is not Kind.CONSTRAINT
-    return fate not in (Fate.GONE, Fate.WEAKENED, Fate.FEWER)
+    return fate is Fate.KEPT
 
 
 def _counts(loss: Loss) -> bool:
@@ -302,11 +291,11 @@ def _counts(loss: Loss) -> bool:
     return loss.finding.state is not State.IMPLIED
 
 
-def _probed(loss: Loss, changes: Changes, prober: Prober, base: Compiled | None) -> Loss:
+def _probed(loss: Loss, prober: Prober, base: Compiled | None) -> Loss:
     """Returns a loss with the result of putting it back, unless it may have been replaced."""
-    if loss.kind is Kind.PARAM or not _has_room(loss, changes):
+    if loss.kind is Kind.PARAM or not _has_room(loss):
         return loss
-    finding, _ = prober.tried(loss.item, changes, base, is_first=bool(loss.dependents))
+    finding, _ = prober.tried(loss.item, loss.changes, base, is_first=bool(loss.dependents))
     return replace(loss, finding=finding)
 
 
@@ -332,13 +321,13 @@ class _Restoring:
 
     def run(self, settled: set[Item]) -> tuple[str, tuple[str, ...]]:
         found = self.ledger.losses(self.here, self.base) if stands(self.base) else ()
-        lost = [(loss, changes) for loss, changes in found if loss.item not in settled]
-        for loss, changes in sorted(lost, key=lambda pair: _ORDER.index(pair[0].kind)):
+        lost = [loss for loss in found if loss.item not in settled]
+        for loss in sorted(lost, key=lambda loss: _ORDER.index(loss.kind)):
             if loss.kind in _THINGS or loss.kind is Kind.PARAM:
-                if _has_room(loss, changes):
+                if _has_room(loss):
                     self._put_thing(loss)
-            elif self._put(loss.item, loss.inventory):
-                self.done.append(named(loss.item, loss.inventory))
+            elif self._put(loss.item, loss.changes.before):
+                self.done.append(named(loss.item, loss.changes.before))
         return self.source.text, tuple(self.done)
 
     def _put(self, item: Item, inventory: Inventory, is_first: bool = False) -> bool:
@@ -354,25 +343,26 @@ class _Restoring:
         """Puts back a structure, geometry or parameter, with its mentions; alone it makes no sense if there
         were any, and a parameter never does. Of conflicting statements nobody knows which one was right.
         """
-        before = self.source, self.base, self.here
+        now, inventory = (self.source, self.base, self.here), loss.changes.before
         clear = [item for item in loss.dependents if not item.clashes]
-        if not self._put(loss.item, loss.inventory, is_first=bool(clear)):
+        if not self._put(loss.item, inventory, is_first=bool(clear)):
             return
-        kept = [item for item in clear if self._put(item, loss.inventory)]
+        kept = [item for item in clear if self._put(item, inventory)]
         is_idle = not kept and (clear or loss.kind is Kind.PARAM)
-        if is_idle or any(new_errors(loss.inventory, before[1], self.base)):
-            self.source, self.base, self.here = before
+        if is_idle or any(new_errors(inventory, now[1], self.base)):
+            self.source, self.base, self.here = now
             return
-        self.done += [named(item, loss.inventory) for item in (loss.item, *kept)]
+        self.done += [named(item, inventory) for item in (loss.item, *kept)]
 
 
-def _has_room(loss: Loss, changes: Changes) -> bool:
+def _has_room(loss: Loss) -> bool:
     """True if something can be put back as it was: nothing new stands in the place of the thing itself."""
     if loss.fate is Fate.FEWER or loss.kind not in _THINGS:
         return loss.fate is not Fate.FEWER
-    home = changes.paths.get(loss.item.home, loss.item.home)
-    known = set(changes.paths.values())
-    return not any(o.home == home and path not in known for path, o in changes.after.things.items())
+    paths = loss.changes.paths
+    home, known = paths.get(loss.item.home, loss.item.home), set(paths.values())
+    things = loss.changes.after.things
+    return not any(other.home == home and path not in known for path, other in things.items())
 
 
 __all__ = ["Kind", "Ledger", "Loss", "request"]

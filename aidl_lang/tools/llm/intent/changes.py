@@ -6,6 +6,7 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import replace
 from enum import StrEnum
+from itertools import chain
 
 from aidl_lang.common.records import record
 from aidl_lang.syntax import ast
@@ -130,11 +131,8 @@ def _contents(inventory: Inventory) -> dict[Path, Counter[object]]:
 
 
 class Fate(StrEnum):
-    SAME = "same"
-    CHANGED = "changed"  # another number, another maker, or another loop around it
+    KEPT = "kept"  # perhaps with another number, name, maker, loop around it, or in another structure
     REWRITTEN = "rewritten"  # another statement about the same things
-    MOVED = "moved"  # the same name in another structure
-    RENAMED = "renamed"
     FEWER = "fewer"  # a loop or a list makes less of them
     WEAKENED = "weakened"  # it was asked for, and is wished for or only checked
     GONE = "gone"
@@ -177,20 +175,12 @@ def _of_thing(
     if path is None:
         return Fate.GONE, None
     other = after.things[path]
-    if _are_fewer(item, before, other, after):
-        return Fate.FEWER, other
-    home = paths.get(item.home, item.home)
-    name = item.thing[len(item.home)]
-    if other.home != home:
-        return Fate.MOVED, other
-    if other.thing[len(other.home)] != name:
-        return Fate.RENAMED, other
-    return (Fate.SAME if other.key == translated(item.key, paths) else Fate.CHANGED), other
+    return (Fate.FEWER if _are_fewer(item, before, other, after) else Fate.KEPT), other
 
 
 def _are_fewer(item: Item, before: Inventory, other: Item, after: Inventory) -> bool:
     """True if the number of something per holder has shrunk, and no param decides over it."""
-    many, few = before.counts[unnumbered(item.thing)], after.counts[unnumbered(other.thing)]
+    many, few = before.count(item), after.count(other)
     if not 0 < few < many or item.thing[-1].startswith("["):
         return False
     homes = before.counts[unnumbered(item.home)], after.counts[unnumbered(other.home)]
@@ -211,22 +201,21 @@ def _decides(item: Item) -> frozenset[str]:
 def _of_param(item: Item, after: Inventory, paths: Mapping[Path, Path]) -> tuple[Fate, Item | None]:
     """Returns the fate of a param: it keeps its name, or is recognised by its words wherever it stands."""
     params = [i for i in after.items if i.kind is Kind.PARAM]
-    path = (*paths.get(item.home, item.home), item.thing[-1])
-    for other in params:
-        if other.thing == path:
-            return (Fate.SAME if other.text == item.text else Fate.CHANGED), other
-    for other in params:
-        if other.thing[-1] == item.thing[-1]:
-            return Fate.MOVED, other
-    for other in params:
-        if other.home == path[:-1] and other.key[2:] == item.key[2:]:
-            return Fate.RENAMED, other
-    return Fate.GONE, None
+    home = paths.get(item.home, item.home)
+    name = item.thing[-1]
+    ways = (
+        (o for o in params if o.thing == (*home, name)),
+        (o for o in params if o.thing[-1] == name),
+        (o for o in params if o.home == home and o.key[2:] == item.key[2:]),
+    )
+    other = next(chain(*ways), None)
+    return (Fate.GONE if other is None else Fate.KEPT), other
 
 
 _Marks = Callable[[Item], Iterable[object]]
-_STRENGTHS = (((0,), None), ((-1,), Fate.WEAKENED), ((1,), None))
-"""Pairs that are as strong, become weaker, and become stronger."""
+_SAME: tuple[_Marks, _Marks] = (lambda one: [(one.key, one.context)], lambda one: [(one.home, one.text)])
+_ALIKE_BUT: tuple[_Marks, _Marks] = (lambda one: [one.key], lambda one: [one.shape])
+"""Marks of statements that are the same, and of those with another number or loop around them."""
 
 
 class _Statements:
@@ -234,16 +223,19 @@ class _Statements:
 
     def __init__(self, before: Inventory, after: Inventory, paths: Mapping[Path, Path]) -> None:
         self.fates: dict[Item, tuple[Fate, Item | None]] = {}
-        self.open = [(i, _as_read(i, paths)) for i in before.items if i.kind in STATED]
+        self.open = [
+            (i, replace(i, key=translated(i.key, paths), home=paths.get(i.home, i.home)))
+            for i in before.items
+            if i.kind in STATED
+        ]
+        """The statements without a counterpart, each also as it would read in the later program."""
         self.free = [i for i in after.items if i.kind in STATED]
 
     def pair(self) -> None:
-        for signs, weaker in _STRENGTHS:
-            self._phase(weaker or Fate.SAME, signs, lambda one: [(one.key, one.context)])
-            self._phase(weaker or Fate.SAME, signs, lambda one: [(one.home, one.text)])
-        for signs, weaker in _STRENGTHS:
-            self._phase(weaker or Fate.CHANGED, signs, lambda one: [one.key])
-            self._phase(weaker or Fate.CHANGED, signs, lambda one: [one.shape])
+        for ways in (_SAME, _ALIKE_BUT):
+            for sign in (0, -1, 1):  # as strong, weaker, stronger
+                for marks in ways:
+                    self._phase(Fate.WEAKENED if sign < 0 else Fate.KEPT, (sign,), marks)
         self._phase(Fate.REWRITTEN, (0, 1), lambda one: one.things, _about)
         self._phase(Fate.WEAKENED, (-1,), lambda one: one.things, _about)
 
@@ -271,11 +263,6 @@ class _Statements:
                 spent.add(found)
         self.open = left
         self.free = [o for o in self.free if o not in spent]
-
-
-def _as_read(item: Item, paths: Mapping[Path, Path]) -> Item:
-    """Returns an item as it would read in the later program."""
-    return replace(item, key=translated(item.key, paths), home=paths.get(item.home, item.home))
 
 
 def strength(item: Item) -> int:

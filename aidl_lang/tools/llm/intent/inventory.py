@@ -320,6 +320,10 @@ class Inventory:
         """Yields the items in a structure, at any depth."""
         return (item for item in self.items if item.home[: len(path)] == path)
 
+    def count(self, item: Item) -> int:
+        """Returns how many of a thing the model has."""
+        return self.counts[unnumbered(item.thing)]
+
 
 def unnumbered(path: Path) -> Path:
     return tuple(component for component in path if not component.startswith("["))
