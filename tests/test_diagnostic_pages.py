@@ -35,6 +35,14 @@ def test_every_page_has_a_code() -> None:
     assert sorted(set(CODES) - codes_in_source()) == []
 
 
+def test_every_code_is_told_by_a_test() -> None:
+    """Most stand in a document of `tests/spec`, with their text."""
+    folders = (ROOT / name for name in ("tests", "eval/tests", "web/tests"))
+    files = [path for folder in folders for path in folder.rglob("*") if path.suffix in (".py", ".md")]
+    told = "".join(path.read_text("utf-8") for path in files)
+    assert [code for code in CODES if code not in told] == []
+
+
 @pytest.mark.parametrize("code", CODES)
 def test_page_has_its_parts(code: str) -> None:
     text = (PAGES / f"{code}.md").read_text(encoding="utf-8")

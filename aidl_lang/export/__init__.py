@@ -28,6 +28,7 @@ class Format:
 
     label   describes the file in menus; a format without one is asked for by its suffix alone
     needs   the module that it needs, and the extra of the package that installs that
+    lacks   the looks that it has no place for, and why; pictures and tables lack none
     cuts    whether it holds outlines for a cutter
     tiles   whether it is a picture, which can be printed over several pages
     inches  whether it may be in other units than mm
@@ -36,6 +37,7 @@ class Format:
     write: Callable[[Sequence[Job]], Exported]
     label: str = ""
     needs: tuple[str, str] | None = None
+    lacks: tuple[str, str] = ("", "")
     cuts: bool = False
     tiles: bool = False
     inches: bool = False
@@ -85,7 +87,7 @@ class Exporter:
             require(wanted.needs[0], suffix, wanted.needs[1])
         _check(job.options, suffix, wanted)
         jobs, notes = [job], [] if suffix == ".json" else _emptiness(job)
-        unsaid = notes_of(job, suffix, cuts=wanted.cuts)
+        unsaid = notes_of(job, wanted.lacks, cuts=wanted.cuts)
         if job.options.sheet is not None or job.options.kerf:
             jobs, notes = self._prepared
         made = wanted.write(jobs)
@@ -234,16 +236,22 @@ def _each(module: str, name: str) -> Callable[[Sequence[Job]], Exported]:
     return write
 
 
+_ON_SOLIDS = "stroke dash shade color(…) edges halo shadow"
+_STEP = _ON_SOLIDS, "STEP holds shapes with their colours, and its lines no width and no areas"
+_STL = "stroke dash opacity shade color(…) edges halo shadow", "STL holds bare shapes"
+_3MF = _ON_SOLIDS, "3MF holds solids with their colours, and draws nothing on them"
+_DXF = "opacity shade stroke(none) edges halo shadow", "DXF holds outlines, and nothing is filled"
+
 FORMATS: dict[str, Format] = {
     ".svg": Format(_pictures(".svg"), "SVG drawing", cuts=True, tiles=True, inches=True),
     ".pdf": Format(_pictures(".pdf"), "PDF, true to scale", cuts=True, tiles=True),
     ".png": Format(_pictures(".png"), "PNG picture", cuts=True, tiles=True),
-    ".dxf": Format(_each("dxf", "to_dxf"), "DXF for cutters", cuts=True, inches=True),
+    ".dxf": Format(_each("dxf", "to_dxf"), "DXF for cutters", lacks=_DXF, cuts=True, inches=True),
     ".csv": Format(_writer("sheets", "to_csv"), cuts=True),
-    ".step": Format(_each("step", "to_step"), "STEP solid", ("OCP", "step")),
-    ".stp": Format(_each("step", "to_step"), needs=("OCP", "step")),
-    ".stl": Format(_each("mesh", "to_stl"), "STL mesh"),
-    ".3mf": Format(_each("mesh", "to_3mf"), "3MF for printers", ("lib3mf", "3mf")),
+    ".step": Format(_each("step", "to_step"), "STEP solid", ("OCP", "step"), _STEP),
+    ".stp": Format(_each("step", "to_step"), needs=("OCP", "step"), lacks=_STEP),
+    ".stl": Format(_each("mesh", "to_stl"), "STL mesh", lacks=_STL),
+    ".3mf": Format(_each("mesh", "to_3mf"), "3MF for printers", ("lib3mf", "3mf"), _3MF),
     ".json": Format(_each("json", "to_json")),
 }
 

@@ -16,52 +16,39 @@ _NAMED = 6
 _UNLINED = "stroke(none)"
 _AREA = "color(…)"
 """That of an area of a solid or a drawing, by itself."""
-_WITHOUT: Mapping[str, str] = {
-    "stroke": "cutter .step .stl .3mf",
-    "dash": "cutter .step .stl .3mf",
-    "opacity": "cutter .stl .dxf",
-    "shade": "cutter .step .stl .3mf .dxf",
-    _UNLINED: ".dxf",
-    _AREA: ".step .stl .3mf",
-    "edges": "cutter .step .stl .3mf .dxf",
-    "halo": "cutter .step .stl .3mf .dxf",
-    "shadow": "cutter .step .stl .3mf .dxf",
-}
-"""By attribute, or one as written, the files that have no place for it; all others are drawn so."""
-_WHY: Mapping[str, str] = {
-    "cutter": "a cutter follows whole lines of one width, and fills nothing",
-    ".step": "STEP holds shapes with their colours, and its lines no width and no areas",
-    ".stl": "STL holds bare shapes",
-    ".3mf": "3MF holds solids with their colours, and draws nothing on them",
-    ".dxf": "DXF holds outlines, and nothing is filled",
-}
+_OF_CUTTERS = (
+    "stroke dash opacity shade edges halo shadow",
+    "a cutter follows whole lines of one width, and fills nothing",
+)
 
 
-def notes_of(job: Job, suffix: str, *, cuts: bool) -> list[Diagnostic]:
-    """Returns what a file does not hold as it is said; `cuts`: a cutter may read the format."""
-    said = [*_blind(job, suffix), *_followed(job)] if cuts else []
-    return [*_unsaid(job, "cutter" if cuts and job.options.for_cutter else suffix), *said]
+def notes_of(job: Job, lacks: tuple[str, str], *, cuts: bool) -> list[Diagnostic]:
+    """Returns what a file does not hold as it is said: the looks that its format lacks, and why; `cuts`: a
+    cutter may read the format.
+    """
+    if not cuts:
+        return list(_unsaid(job, *lacks))
+    said = [*_blind(job), *_followed(job)] if job.options.followed is not None or lacks[0] else []
+    return [*_unsaid(job, *(_OF_CUTTERS if job.options.for_cutter else lacks)), *said]
 
 
-def _unsaid(job: Job, suffix: str) -> Iterator[Diagnostic]:
+def _unsaid(job: Job, lacks: str, why: str) -> Iterator[Diagnostic]:
     """Yields a note if a file has no place for stated looks."""
-    file = suffix.replace(".stp", ".step")
-    lost = [name for name, files in _WITHOUT.items() if file in files.split()]
+    lost = lacks.split()
     if stated := list(_stated(job.model.root, lost)):
         names = [n for n in lost if any(n == name for _, name in stated)]
         times = len({id(holder) for holder, _ in stated})
         counts = "counts" if len(names) == 1 else "count"
-        message = f"{listed(ticked(names, '@'))} {counts} for nothing in this file: {_WHY[file]}"
+        message = f"{listed(ticked(names, '@'))} {counts} for nothing in this file: {why}"
         label = "stated here" if times == 1 else f"stated here first, {times} times in all"
         hint = "pictures (.svg, .png, .pdf) are drawn so"
         yield Diagnostic("N0741", message, stated[0][0].span, label, hints=(hint,))
 
 
-def _blind(job: Job, suffix: str) -> Iterator[Diagnostic]:
+def _blind(job: Job) -> Iterator[Diagnostic]:
     """Yields a note on holes that end in their solid, of which a cutter can engrave the outline alone."""
     depths = {path: s.depth for path, s in job.drawing.styles.items() if s.is_blind}
-    blind = [path for path in job.drawing.regions if path in depths]
-    if blind and (job.options.followed is not None or suffix == ".dxf"):
+    if blind := [path for path in job.drawing.regions if path in depths]:
         is_one = len(blind) == 1
         what = "ends in its solid: its outline is" if is_one else "end in their solid: their outlines are"
         deep = listed(sorted({fixed(depths[path][0]) for path in blind}))

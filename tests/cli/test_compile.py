@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import stat
+import sys
 from pathlib import Path
 
 import pytest
@@ -246,3 +247,11 @@ def test_nothing_replaces_no_drawing(aidl: Aidl, folder: Path, text: str, more: 
     for _ in range(2):
         assert aidl("compile", "none.aidl", "-o", "new.svg", *more).code == 0
     assert (folder / "new.svg").exists()
+
+
+def test_a_terminal_is_sent_text_alone(aidl: Aidl, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sys.stdout, "isatty", lambda: True)
+    assert aidl("compile", "good.aidl", "-o", "-", "--format", "svg").out.startswith("<?xml")
+    refused = aidl("compile", "good.aidl", "-o", "-", "--format", "png")
+    assert (refused.code, refused.out) == (2, "")
+    assert "error[E0920]: a terminal cannot show this format\n" in refused.err

@@ -288,7 +288,9 @@ def test_explain(aidl: Aidl) -> None:
     unknown = aidl("explain", "W0901")
     assert unknown.code == 2
     assert "did you mean E0901?" in unknown.err
-    assert aidl("explain", "nonsense").code == 2
+    nonsense = aidl("explain", "nonsense")
+    assert nonsense.code == 2
+    assert nonsense.err.startswith("error[E0907]: there is no code `nonsense`\n")
 
 
 def test_new_writes_a_program_that_compiles(aidl: Aidl, folder: Path) -> None:

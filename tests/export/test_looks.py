@@ -12,6 +12,7 @@ from ezdxf.document import Drawing as Document
 from PIL import Image
 from pypdfium2 import PdfDocument
 
+from aidl_lang.export import FORMATS
 from aidl_lang.export.job import Exported
 from aidl_lang.export.marks import LIGHT, OUTLINE
 from aidl_lang.export.profiles import PROFILES
@@ -511,7 +512,7 @@ solid plate {{
 """
 LOOKS = ("@stroke(1mm)", "@dash(3, 1)", "@opacity(0.5)", "@shade(round)", "@edges(seams)", "@stroke(none)")
 DEPTHS = ("@depth(2mm)", "@depth(2mm, 90deg)")
-FILES = (".svg", ".pdf", ".png", ".dxf", ".step", ".stl", ".3mf", "cutter.svg", "cutter.dxf")
+FILES = [*(suffix for suffix in FORMATS if suffix not in (".csv", ".json")), "cutter.svg", "cutter.dxf"]
 
 
 @cache

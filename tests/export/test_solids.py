@@ -147,7 +147,8 @@ def test_turned_and_mirrored_structures(tmp_path: Path) -> None:
     """
     made = written(program, ".step")
     file, (note,) = read_step(made.data, tmp_path), made.notes
-    assert note.message == "`all.half.post` stands unturned in `all.half`, which is turned"
+    said = "`all.half.post` stands unturned in `all.half`, which is turned"
+    assert (note.code, note.message) == ("W0726", said)
     assert file["all.half.foot"].bounds == pytest.approx((98, 0, 0, 102, 20, 2), abs=1e-9)
     # Its origin is carried to (100, 20); its own turn stands it up in the plane of x and z.
     assert file["all.half.post"].bounds == pytest.approx((96, 20, 0, 100, 22, 30), abs=1e-9)

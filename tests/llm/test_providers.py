@@ -150,7 +150,9 @@ def test_reply_that_always_breaks_off(scripted: Start, kind: str) -> None:
 
 def test_models_are_named_when_one_is_not_there(scripted: Start) -> None:
     server = scripted([Failed(404)], models=["llama3.1:8b", "qwen3-coder:30b"])
-    assert failure(server, model="qwen3-coder")[2] == ("the server has qwen3-coder:30b, …",)
+    code, message, hints = failure(server, model="qwen3-coder")
+    assert (code, message.partition(" (404)")[0]) == ("E0934", "there is no model `qwen3-coder`")
+    assert hints == ("the server has qwen3-coder:30b, …",)
 
 
 def test_address_that_is_wrong_is_told(scripted: Start) -> None:

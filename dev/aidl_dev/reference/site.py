@@ -1,9 +1,10 @@
 """The generated files of a checkout: the pages of `docs/reference`, the gallery, their pictures, the guide,
-`llms.txt`.
+`llms.txt`, and the lists of formats in other pages.
 """
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 from aidl_dev import write_changed
@@ -11,10 +12,13 @@ from aidl_dev.reference import coverage, gallery
 from aidl_dev.reference.guide import GENERATED, guide
 from aidl_dev.reference.llms import llms
 from aidl_dev.reference.pages import MARK, pages, pictures
+from aidl_lang.export import FORMATS
 from aidl_lang.tools.reference.collect import reference
 
 _FOLDER = "docs/reference"
 COVERAGE = f"{_FOLDER}/coverage.md"
+_LISTING = ("docs/python.md", "docs/diagnostics/E0905.md", "docs/diagnostics/E0924.md")
+"""Pages that show messages with a list of formats."""
 
 
 def texts(root: Path) -> dict[str, str]:
@@ -23,7 +27,15 @@ def texts(root: Path) -> dict[str, str]:
     """
     found = {f"{_FOLDER}/{path}": text for path, text in pages(reference()).items()}
     found |= {path: guide(variant) for variant, path in GENERATED.items()}
+    found |= {path: _listed((root / path).read_text("utf-8")) for path in _LISTING}
     return {**found, gallery.PAGE: gallery.page(root), "llms.txt": llms(root)}
+
+
+def _listed(page: str) -> str:
+    """Returns a page with the formats that there are in the messages that it shows."""
+    page = re.sub(r"(?<=formats: )[\w, ]+", ", ".join(sorted(suffix[1:] for suffix in FORMATS)), page)
+    cut = ", ".join(sorted(suffix for suffix, made in FORMATS.items() if made.cuts))
+    return re.sub(r"(?<=formats for it: )[\w., ]+", cut, page)
 
 
 def drawn(root: Path) -> dict[str, bytes]:
