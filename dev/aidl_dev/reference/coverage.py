@@ -219,9 +219,12 @@ def headings(text: str) -> list[str]:
 
 
 def unshown(text: str) -> list[str]:
-    """Returns the constraints whose tables in a page show nothing that they take."""
+    """Returns the constraints that take nothing, by their tables in a page or, without one, as tried now."""
     shows = re.compile(r"●|^`[^`]+`: (?!nothing)", re.MULTILINE)
-    return [name for name, section in _sections(text) if not shows.search(section)]
+    shown = {name: shows.search(section) is not None for name, section in _sections(text)}
+    new = (name for name in constraints() if name not in shown)
+    shown |= {name: any(cell.outcome == "works" for cell in cells(name)) for name in new}
+    return [name for name, takes_something in shown.items() if not takes_something]
 
 
 def _sections(text: str) -> list[tuple[str, str]]:
