@@ -13,18 +13,7 @@ import numpy as np
 
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint, give_up
-from aidl_lang.geometry.curves import (
-    Bezier,
-    Bounds,
-    Floats,
-    Ints,
-    Line,
-    Mask,
-    Piece,
-    Vec,
-    larger_side,
-    union_bounds,
-)
+from aidl_lang.geometry.curves import Bezier, Bounds, Floats, Ints, Line, Mask, Piece, Vec, union_bounds
 from aidl_lang.geometry.intersect import Sides, Table, all_intersections, near_rows, self_crossing
 
 # --- Proofs, for many pairs of curves at once, that two curves meet at most in an end that they share.
@@ -236,7 +225,7 @@ class Network:
         self.boxes = [c.box for c in self.curves] if boxes is None else list(boxes)
         self.box = union_bounds(self.boxes) if box is None else box
         left, bottom, right, top = self.box
-        self.size = larger_side(self.box) or 1.0
+        self.size = max(right - left, top - bottom) or 1.0
         self.tolerance = RELATIVE_TOLERANCE * self.size
         self.middle = (left + right) / 2, (bottom + top) / 2
         self.scale = 2.0 ** math.floor(math.log2(16 / self.size))
@@ -310,7 +299,8 @@ class Network:
         if len(cuts) == 1:
             # Both ends in one node: a whole circle or ellipse, else too short to see.
             node = cuts[0][1]
-            is_large = larger_side(self.boxes[number]) > 4 * self.tolerance
+            left, bottom, right, top = self.boxes[number]
+            is_large = max(right - left, top - bottom) > 4 * self.tolerance
             whole = curve.is_closed or (not isinstance(curve, Line) and is_large)
             return [self._edge(number, 0.0, 1.0, node, node)] if whole else []
         return [self._edge(number, t0, t1, a, b) for (t0, a), (t1, b) in pairwise(cuts)]

@@ -86,13 +86,19 @@ class _Outliner:
                 self._finished([_shown(self._drawn(g))], s.finishes, s)
         if s.kind == "drawing" and inside is not None:
             finished = clipped_ink(finished, inside)
+        # Its own in their order, with the corners where they were carried out; then those it has as a copy.
+        left, more = dict(self.carried_out), (f for f in self.carried_out if f not in s.finishes)
+        finishes = tuple(
+            replace(f, corners=tuple(left.pop(f, ())), sizes=self.sizes.get(f, f.sizes))
+            for f in (*s.finishes, *more)
+        )
         derived = (curve for g in geometry for curve in g.curves())
         return replace(
             s,
             geometry=geometry,
             structures=children,
             box=solved.Box.around(derived, children, [s.box.bounds] if s.box is not None else []),
-            finishes=tuple(self._with_corners(s.finishes)),
+            finishes=finishes,
             finished=tuple(finished),
             inside=inside if s.clip else None,
         )
@@ -104,14 +110,6 @@ class _Outliner:
             self.notes.append(notes.open_clip(s))
             return around
         return own if around is None else common(own, around)
-
-    def _with_corners(self, own: Sequence[Finish]) -> Iterator[Finish]:
-        """Yields the finishes of a structure in their order, with the corners where they were carried out, if
-        any; then those that its geometry has as a copy.
-        """
-        left = dict(self.carried_out)
-        for f in (*own, *(f for f in self.carried_out if f not in own)):
-            yield replace(f, corners=tuple(left.pop(f, ())), sizes=self.sizes.get(f, f.sizes))
 
     # --- Outlines made of others -------------------------------------------------------------------
 

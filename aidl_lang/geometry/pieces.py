@@ -8,7 +8,7 @@ single geometry consists of.
 from __future__ import annotations
 
 import re
-from collections import Counter
+from collections import Counter, defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 
 from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix
@@ -107,11 +107,14 @@ def piece_notes(
             pieces = _pieces(walk, mass)
             if len(pieces) > 1:
                 yield from _notes(solid, _groups(pieces, known[solid.path], known, pairs))
-    held, holes = _held_by_others(known, pairs), _holes(root, masses)
+    held, holes = defaultdict[str, list[Solid]](list), _holes(root, masses)
+    for a, b in pairs:
+        held[a].append(known[b])
+        held[b].append(known[a])
     for mass in masses:
         path = mass.structure.path
         if path not in free and mass.section.num_contour() > 1:
-            yield from _cut_free(walk, mass, holes.get(path, ()), held.get(path, ()))
+            yield from _cut_free(walk, mass, holes.get(path, ()), held[path])
 
 
 def _faces(walk: Bodies, structures: Iterable[SolvedStructure]) -> list[OwnFace]:
@@ -301,14 +304,6 @@ def _holes(root: SolvedStructure, masses: Sequence[Mass]) -> dict[str, list[Solv
 
     visit(root, [])
     return found
-
-
-def _held_by_others(known: dict[str, Solid], pairs: Sequence[tuple[str, str]]) -> dict[str, list[Solid]]:
-    held: dict[str, list[Solid]] = {}
-    for a, b in pairs:
-        held.setdefault(a, []).append(known[b])
-        held.setdefault(b, []).append(known[a])
-    return held
 
 
 def _enclosed(sections: Sequence[Section]) -> Iterator[tuple[Section, Section]]:

@@ -453,24 +453,18 @@ def closed_loop(pieces: Sequence[Piece], tolerance: float) -> Loop:
 
 def _fuse(a: Piece, b: Piece, tolerance: float) -> Piece | None:
     """Returns one piece for two that follow each other on the same line or circle; None for others."""
-    if isinstance(a, Line) and isinstance(b, Line):
-        return _fuse_lines(a, b, tolerance)
     if isinstance(a, Arc) and isinstance(b, Arc):
         same = math.dist(a.center, b.center) <= tolerance and abs(a.radius - b.radius) <= tolerance
         if same and a.sweep * b.sweep > 0 and abs(a.sweep + b.sweep) <= math.tau + 1e-9:
             return Arc(a.center, a.radius, a.start, b.end, a.sweep + b.sweep)
-    return None
-
-
-def _fuse_lines(a: Line, b: Line, tolerance: float) -> Line | None:
-    dx, dy = b.end[0] - a.start[0], b.end[1] - a.start[1]
-    ax, ay = a.end[0] - a.start[0], a.end[1] - a.start[1]
-    whole = math.hypot(dx, dy)
-    if whole <= tolerance or ax * dx + ay * dy <= 0 or math.hypot(ax, ay) >= whole:
+    if not (isinstance(a, Line) and isinstance(b, Line)):
+        return None
+    (ax, ay), (dx, dy) = a.way, Line(a.start, b.end).way
+    own, whole = math.hypot(ax, ay), math.hypot(dx, dy)
+    if whole <= tolerance or ax * dx + ay * dy <= 0 or own >= whole:
         return None
     away = abs(ax * dy - ay * dx) / whole
-    shorter = min(math.hypot(ax, ay), whole - math.hypot(ax, ay))
-    return Line(a.start, b.end) if away <= min(tolerance, 1e-5 * shorter) else None
+    return Line(a.start, b.end) if away <= min(tolerance, 1e-5 * min(own, whole - own)) else None
 
 
 def joined(items: Sequence[T], join: Callable[[T, T], T | None]) -> list[T]:

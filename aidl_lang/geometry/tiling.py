@@ -152,8 +152,8 @@ class Lattice:
             if not min(sides) <= _cross(unit, (dx, dy)) <= max(sides):
                 continue
             shares = [unit[0] * (cx - dx) + unit[1] * (cy - dy) for cx, cy in corners]
-            at = x + dx, y + dy
-            yield Line(_along(at, unit, min(shares)), _along(at, unit, max(shares)))
+            tips = ((x + dx + far * unit[0], y + dy + far * unit[1]) for far in (min(shares), max(shares)))
+            yield Line(*tips)
 
 
 def tiled_strokes(cell: Sequence[Piece], region: Region, lattice: Lattice, *, whole: bool) -> list[Piece]:
@@ -276,7 +276,3 @@ def _span(share: Floats, low: Floats, high: Floats) -> range:
 
 def _cross(a: Vec, b: Vec) -> float:
     return a[0] * b[1] - a[1] * b[0]
-
-
-def _along(p: Vec, unit: Vec, share: float) -> Vec:
-    return p[0] + share * unit[0], p[1] + share * unit[1]

@@ -11,7 +11,7 @@ from aidl_lang.common.source import SourceFile
 
 def test_the_fix_makes_the_inner_loop_a_hole():
     bore = "bore = circle(center: (5, 5), radius: 2)"
-    source = SourceFile("x.aidl", f"solid s {{\n    plate = square(20)\n    {bore}\n}}\n")
+    source = SourceFile("x.aidl", f"solid s {{\n    plate = square(size: 20)\n    {bore}\n}}\n")
     (note,) = pipeline.compile(source).diagnostics
     assert apply_fixes(source, [note]) == (source.text.replace(bore, f"hole bore_hole {{ {bore} }}"), 1)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 
 import pytest
 from hypothesis import given
@@ -43,10 +44,7 @@ def measured(made: Model) -> tuple[float, tuple[float, float, float, float], dic
     drawing = made._compiled.drawing
     measures = drawing.measures["a.part"]
     left, bottom, right, top = measures.box
-    counts: dict[str, int] = {}
-    for stroke in drawing.strokes:
-        name = stroke.geometry.rpartition(".")[2].partition("[")[0]
-        counts[name] = counts.get(name, 0) + 1
+    counts = Counter(s.geometry.rpartition(".")[2].partition("[")[0] for s in drawing.strokes)
     return measures.area, (left - 3, bottom - 4, right - 3, top - 4), counts
 
 

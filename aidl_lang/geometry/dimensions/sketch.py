@@ -231,7 +231,8 @@ class Sketch:
 
     def _turn(self, a: Spot, b: Spot, c: Spot, d: Spot, is_right: bool = False) -> None:
         """Notes that two slanted ways are seen to be parallel, or at a right angle."""
-        self._equate(partial(_turned, dot if is_right else cross), a, b, c, d)
+        product = dot if is_right else cross
+        self._equate(lambda a, b, c, d, z: product(way(a, b, z), way(c, d, z)), a, b, c, d)
 
     def _vertex(self, before: Piece, after: Piece) -> Spot:
         """Returns where a piece begins; where an axial edge touches an arc, straight beside the centre."""
@@ -271,7 +272,8 @@ class Sketch:
             other = self._spots.find(flipped(spot.at, axis, middle))
             if other is None:
                 continue
-            self._equate(_off_middle, spot.along(axis), other.along(axis), plain(axle))
+            sides = spot.along(axis), other.along(axis)
+            self._equate(lambda a, b, mid, z: a.of(z) + b.of(z) - 2 * mid.of(z), *sides, plain(axle))
             self.equations.append(less(spot.along(1 - axis), other.along(1 - axis)))
         for own in self.rounds:
             twin = self._rounds.find((*flipped(own.curve.center, axis, middle), own.curve.radius))
@@ -383,20 +385,9 @@ def cross(u: tuple[complex, complex], v: tuple[complex, complex]) -> complex:
     return u[0] * v[1] - u[1] * v[0]
 
 
-Product = Callable[[tuple[complex, complex], tuple[complex, complex]], complex]
-
-
-def _turned(product_of: Product, a: Spot, b: Spot, c: Spot, d: Spot, z: Unknowns) -> complex:
-    return product_of(way(a, b, z), way(c, d, z))
-
-
 def _off(a: Spot, center: Spot, radius: int, z: Unknowns) -> complex:
     u = way(a, center, z)
     return dot(u, u) - z[radius] ** 2
-
-
-def _off_middle(a: Reading, b: Reading, middle: Reading, z: Unknowns) -> complex:
-    return a.of(z) + b.of(z) - 2 * middle.of(z)
 
 
 def _crossing(a: Spot, b: Spot, c: Spot, d: Spot, axis: int, z: Unknowns) -> complex:
