@@ -4,8 +4,8 @@ Running means: constants are computed, loops and branches taken, geometry made w
 arithmetic over unknowns kept as an expression. An error is reported and yields `NOTHING`, which everything it
 touches passes on in silence, so that one run reports all errors and still yields what can be drawn.
 
-The work is done in `building/`: `structures` (files and roots, too), `statements`, `evaluate` (expressions),
-`overloads` and `calls` (definitions), `construct` (geometry and the exactness of its numbers), `impose`
+The work is done in `building/`: `structures` (files and roots, too), `statements`, `evaluate` (expressions
+and bodies), `calls` (definitions), `construct` (geometry and the exactness of its numbers), `impose`
 (constraints). The stages before come along: text → Program → Model, with all diagnostics that they can give.
 """
 

@@ -43,7 +43,7 @@ def solved(shape: str, asked: str) -> aidl_lang.Model:
     return model
 
 
-@pytest.mark.parametrize(("number", "shape"), enumerate(SHAPES))
+@pytest.mark.parametrize(("number", "shape"), list(enumerate(SHAPES)))
 @pytest.mark.parametrize("measure", ASKED)
 def test_an_outline_gets_the_measure_that_it_is_asked_for(measure: str, number: int, shape: str) -> None:
     wanted = ASKED[measure][number % 2]

@@ -46,8 +46,8 @@ class Box:
             return ex.lazy(side)
         return extent(side, frozenset())
 
-    def field(self, name: str) -> Num | PointVal | None:
-        """Returns one of `FIELDS`; None for another name."""
+    def field(self, name: str) -> Num | PointVal:
+        """Returns one of `FIELDS`."""
         low, high = ("left", "right") if name in ("width", "center_x") else ("bottom", "top")
         match name:
             case "left" | "right" | "top" | "bottom":
@@ -59,8 +59,6 @@ class Box:
             case "center":
                 return self._at("center", "center")
             case _:
-                if name not in FIELDS:
-                    return None
                 a, b = name.split("_")
                 return self._at(a, b) if a in ("top", "bottom") else self._at(b, a)
 

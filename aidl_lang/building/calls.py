@@ -477,19 +477,14 @@ class CallSite:
         if signatures and (followed := FOLLOWED.get(signatures[0].name)) is not None:
             self.derives = any(a.name is not None and fold(a.name.text) in followed for a in node.arguments)
         self._meanings: dict[tuple[Type, ...], Binding | list[Mismatch]] = {}
-        self._last: tuple[tuple[Type, ...] | None, Binding | list[Mismatch]] = (None, [])
 
     def meaning(self, values: Sequence[Value]) -> Binding | list[Mismatch]:
         """Returns the overload that is meant. Types decide, so a choice holds whenever they come again."""
         kinds = tuple(map(type_of, values))
-        before, found = self._last
-        if kinds == before:  # usually so, and types are slow to hash
-            return found
         if (known := self._meanings.get(kinds)) is None:
             if len(self._meanings) >= _MOST_MEANINGS:
                 self._meanings.clear()
             known = self._meanings[kinds] = select(self.signatures, given_to(self.node, kinds))
-        self._last = kinds, known
         return known
 
     def reading(self, values: list[Value]) -> tuple[Binding | list[Mismatch], list[Value]]:

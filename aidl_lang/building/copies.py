@@ -125,8 +125,6 @@ class Copier:
         if source.name is None and source.known_as is None:
             source.known_as = copy
         self._place(source, copy)
-        if source.recipe is not None:
-            copy.recipe = source.recipe.made_of(self.geometry, lambda n: self._number("", n, source.owner))
         copy.fields = {name: self.value(name, v, source.owner) for name, v in source.fields.items()}
         if isinstance(source.scope, Scope):
             self._contents(source, source.scope, copy)

@@ -232,8 +232,6 @@ class _Lowering:
     def _leaf(self, node: Expression) -> int:
         if node.op == "constant":
             return self.tape.constant(node.value)
-        if not isinstance(node.payload, Unknown):
-            raise TypeError(f"`{node.op}` is known only once all is drawn")
         if (number := self.numbers.get(node.payload)) is None:
             return self.tape.constant(node.payload.guess)
         return self.tape.unknown(number, shifts=_axis(node.payload) >= 0)

@@ -458,19 +458,16 @@ def _substituted(wording: Wording, node: ast.Expression, evaluate: Evaluate) -> 
             return replace(node, left=one, right=other)
         case ast.Unary(operator="-", operand=operand) if not isinstance(operand, ast.Number):
             return replace(node, operand=_substituted(wording, operand, evaluate))
-        case ast.Name() if _is_of_the_language(wording, node):
-            return node
+        case ast.Name():
+            symbol = wording.it.program.resolution.uses.get(node)
+            if symbol is not None and symbol.kind is SymbolKind.BUILTIN:
+                return node
     numbers = _numbers(wording, node)
     if len(numbers) != 1:
         return node
     (value,) = _values(numbers, evaluate)
     number = ast.Number(abs(value), None, _shown((abs(value),), 6), span=node.span)
     return ast.Unary("-", number, span=node.span) if value < 0.0 else number
-
-
-def _is_of_the_language(wording: Wording, node: ast.Name) -> bool:
-    symbol = wording.it.program.resolution.uses.get(node)
-    return symbol is not None and symbol.kind is SymbolKind.BUILTIN
 
 
 def _leaves(node: ast.Expression) -> Iterator[ast.Expression]:

@@ -230,12 +230,14 @@ _SECONDS = 1.0  # time for each of them
 
 def repetition_notes(lowered: Lowered, solution: Solution, freedom: Freedom) -> list[Diagnostic]:
     """Returns a note for each written constraint that follows from others, and each undecided part."""
-    redundant = [found for found in freedom.redundant if _stated(lowered, found.constraint)]
+    redundant = [(f, stated) for f in freedom.redundant if (stated := _stated(lowered, f.constraint))]
     times = Counter(stated.span for stated in lowered.stated if stated is not None)
-    can_go = [found.constraint for found in redundant if _is_single(lowered.stated[found.constraint], times)]
+    # What a loop or a template states may follow in one turn only.
+    single = [(f, c) for f, c in redundant if c.node is not None and not c.label and times[c.span] == 1]
+    can_go = [f.constraint for f, _ in single]
     if not _changes_nothing(lowered, solution, can_go):
         can_go = []
-    notes = [_note(lowered, found, found.constraint in can_go) for found in redundant]
+    notes = [_note(lowered, f, stated, f.constraint in can_go) for f, stated in redundant]
     return [*notes, *_undecided(lowered, freedom)]
 
 
@@ -244,9 +246,7 @@ def _stated(lowered: Lowered, index: int) -> Constraint | None:
     return stated if stated is not None and stated.wording is not None else None
 
 
-def _note(lowered: Lowered, found: Redundancy, can_go: bool) -> Diagnostic:
-    stated = lowered.stated[found.constraint]
-    assert stated is not None
+def _note(lowered: Lowered, found: Redundancy, stated: Constraint, can_go: bool) -> Diagnostic:
     others = [other for i in found.follows_from if (other := lowered.stated[i]) is not None]
     names = list(dict.fromkeys(told(other) for other in others))
     reason = listed(names, _NAMED) or "the other constraints"
@@ -255,11 +255,6 @@ def _note(lowered: Lowered, found: Redundancy, can_go: bool) -> Diagnostic:
     fix = Fix(f"leave out {name}", left.edits) if left else None
     message = f"{name} follows from {reason}"
     return Diagnostic("N0602", message, stated.span, "says nothing new", tuple(labels), fix=fix)
-
-
-def _is_single(stated: Constraint | None, times: Counter[Span]) -> bool:
-    """Tells whether its place states this constraint and no other: no loop, no template."""
-    return stated is not None and stated.node is not None and not stated.label and times[stated.span] == 1
 
 
 def _changes_nothing(lowered: Lowered, solution: Solution, left_out: Sequence[int]) -> bool:
