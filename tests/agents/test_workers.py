@@ -6,6 +6,7 @@ import asyncio
 import os
 import time
 from collections.abc import Iterator
+from pathlib import Path
 
 import pytest
 
@@ -23,6 +24,9 @@ class Broken(Tools):
     def explain(self, name: str) -> Page:
         match name:
             case "hang":
+                time.sleep(600)
+            case _ if name.startswith("/"):  # tells by a file that it has begun
+                Path(name).touch()
                 time.sleep(600)
             case "end":
                 os._exit(3)
@@ -61,13 +65,15 @@ async def _both(workers: Workers, *names: str) -> list[str]:
     return [m.text for m in made]
 
 
-def test_call_that_is_cancelled_ends_its_process(workers: Workers) -> None:
+def test_call_that_is_cancelled_ends_its_process(workers: Workers, tmp_path: Path) -> None:
     """Else two calls that hang would leave no process for the third."""
     workers.seconds = 600.0
 
     async def cancelled() -> str:
-        calls = [asyncio.create_task(workers.answer("explain", {"name": "hang"})) for _ in range(2)]
-        await asyncio.sleep(4.0)
+        begun = [tmp_path / name for name in "ab"]
+        calls = [asyncio.create_task(workers.answer("explain", {"name": str(file)})) for file in begun]
+        while not all(file.exists() for file in begun):
+            await asyncio.sleep(0.1)
         for call in calls:
             call.cancel()
         return (await asyncio.wait_for(workers.answer("explain", {"name": "fine"}), 60.0)).text

@@ -93,12 +93,12 @@ def test_members(marked: str, has: set[str], has_not: set[str]) -> None:
 
 @pytest.mark.parametrize("thing", ["rim", "first", "body", "first.start", "body.top", "rim.bb"])
 def test_every_member_is_there(thing: str) -> None:
-    text, offset = cursor(THINGS.replace("%s", f"constrain {{ q({thing}.¦) }}"))
+    text, offset = cursor(THINGS.replace("%s", f"let x = {thing}.¦"))
     fields = [c for c in complete(seen(text, parts=PARTS), offset) if c.kind != "method"]
     assert fields
-    for completion in fields:
-        codes = {d.code for d in seen(put(text, completion), parts=PARTS).found}
-        assert "E0202" not in codes, completion.label
+    lets = "\n".join(f"let x{n} = {thing}.{c.plain}" for n, c in enumerate(fields))
+    found = seen(THINGS.replace("%s", lets), parts=PARTS).found
+    assert "E0202" not in {d.code for d in found}, [d.message for d in found]
 
 
 def test_indices_are_those_that_were_drawn() -> None:
@@ -340,7 +340,7 @@ def test_what_is_inserted_parses_no_worse(path: Path) -> None:
     text = path.read_text("utf-8")
     world = Workspace([path.parent]).world(path)
     tokens = [t for t in tokenize(SourceFile(path.name, text)).tokens if t.text[:1].isalnum()]
-    for number, token in enumerate(chance.sample(tokens, 8)):
+    for number, token in enumerate(chance.sample(tokens, 5)):
         end = token.end - (token.kind == "CALL")
         broken = text[: token.start] + (text[end:] if number % 2 else closed(text[: token.start]))
         found = complete(look(path, broken, world), token.start)

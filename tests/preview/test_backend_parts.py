@@ -161,7 +161,7 @@ def test_what_turns_has_an_arc_about_what_holds_it() -> None:
 
 
 def test_the_examples_have_arrows_in_finite_places() -> None:
-    for path in some(EXAMPLES, 3):
+    for path in some(EXAMPLES, 9):
         view = run(look(path, path.read_text("utf-8"), Workspace().world(path)))
         assert view.outcome is not None
         assert view.outcome.model is not None

@@ -38,7 +38,7 @@ def polygon_area(path: SvgPath) -> float:
     """By the even-odd rule, of polygons with many corners."""
     total = Polygon()
     for part in path.as_subpaths():
-        points = [SvgPath(part).point(k / 2000, error=1e-4) for k in range(2000)]
+        points = [SvgPath(part).point(k / 300, error=1e-4) for k in range(300)]
         ring = Polygon([(p.x, p.y) for p in points]).buffer(0)
         total = total.symmetric_difference(ring)
     return float(total.area)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import re
 import signal
 import subprocess
@@ -18,8 +17,6 @@ from playwright.sync_api import Browser, Locator, Page, expect
 from tests.documents import ROOT
 
 TELEPHONE = (ROOT / "examples" / "telephone.aidl").read_text("utf-8")
-ON_FIRST_HOLE = (19 + 4) * math.cos(math.radians(60)), (19 + 4) * math.sin(math.radians(60))
-"""A point on the first hole of the dial, whose plate lies in the middle of the base."""
 PATIENCE = 30.0
 """Seconds after which what a test waits for is not coming."""
 
@@ -159,43 +156,6 @@ def test_a_dragged_point_changes_the_text(preview: Preview) -> None:
     assert (x, y) == pytest.approx((-20, -10), abs=1)
 
 
-def test_hovering_shows_where_something_is_written(preview: Preview) -> None:
-    marked = preview.find("#source-lines .cm-line.marked")
-    preview.page.mouse.move(*preview.at(0, -30))
-    expect(preview.find("#tooltip")).to_contain_text("160 × 80 mm")
-    expect(marked).to_contain_text(["solid base {", "body = trapezoid(", "}"])
-    preview.page.mouse.move(*preview.at(*ON_FIRST_HOLE))
-    expect(marked).to_contain_text(["rim = circle(center: fixed(polar(19"])
-
-
-def test_a_save_in_another_editor_is_seen(preview: Preview) -> None:
-    preview.file.write_text(TELEPHONE.replace("160mm", "200mm"), "utf-8")
-    preview.until_width(200)
-    expect(preview.find("#source-lines")).to_contain_text("200mm")
-
-
-def test_a_broken_text_leaves_the_picture_marked_as_stale(preview: Preview) -> None:
-    preview.file.write_text(TELEPHONE.replace("solid base {", "solid base {{"), "utf-8")
-    stale = preview.find("#stale")
-    expect(stale).to_be_visible()
-    assert preview.width() == pytest.approx(160, abs=0.01)
-    expect(preview.find("#problems-list")).to_contain_text("E01")
-    preview.file.write_text(TELEPHONE.replace("160mm", "180mm"), "utf-8")
-    expect(stale).to_be_hidden()
-    preview.until_width(180)
-
-
-def test_a_file_is_exported(preview: Preview) -> None:
-    preview.find("#export-button").click()
-    preview.find("#export-format").select_option("dxf")
-    preview.find("#export-menu input[name=sheet]").fill("400x300")
-    with preview.page.expect_download() as download:
-        preview.find("#export-menu button").click()
-    path = download.value.path()
-    assert download.value.suggested_filename == "telephone.dxf"
-    assert path.read_text("utf-8").lstrip().startswith("0\n")
-
-
 def test_what_is_typed_is_drawn_saved_and_undone(preview: Preview) -> None:
     unsaved = preview.find("#save")
     line = preview.page.locator(".cm-line", has_text="param width")
@@ -236,61 +196,3 @@ def test_a_number_with_a_unit_is_written_and_undone(preview: Preview) -> None:
     preview.find("#undo").click()
     preview.until_width(140)
     wait(lambda: preview.text == TELEPHONE.replace("160mm", "14cm"))
-
-
-def test_what_is_being_typed_stays_when_a_new_picture_comes(preview: Preview) -> None:
-    field = preview.page.get_by_role("textbox", name="width")
-    field.fill("200")
-    longer = f"{TELEPHONE}// of another hand\n"
-    preview.file.write_text(longer, "utf-8")
-    expect(preview.find("#source-lines")).to_contain_text("of another hand")
-    expect(field).to_have_value("200")
-    field.press("Enter")
-    wait(lambda: preview.text == longer.replace("160mm", "200mm"))
-    field.fill("90")
-    field.press("Escape")
-    expect(field).to_have_value("200")
-
-
-def test_what_is_selected_to_be_typed_over_stays_selected_when_a_new_picture_comes(preview: Preview) -> None:
-    field = preview.page.get_by_role("textbox", name="width")
-    field.select_text()
-    preview.file.write_text(TELEPHONE.replace("160mm", "150mm"), "utf-8")
-    expect(field).to_have_value("150")
-    preview.page.keyboard.type("200")
-    expect(field).to_have_value("200")
-    field.press("Enter")
-    wait(lambda: preview.text == TELEPHONE.replace("160mm", "200mm"))
-
-
-def test_a_failed_assertion_changes_the_status_while_a_slider_moves(preview: Preview) -> None:
-    text = (
-        "solid a {\n    param w = 30 in 10..90\n    body = rectangle(width: w, height: 20)\n"
-        '    assert w < 60, "too wide"\n}\n'
-    )
-    preview.file.write_text(text, "utf-8")
-    expect(preview.page.get_by_role("textbox", name="w", exact=True)).to_have_value("30")
-    status = preview.find("#status")
-    expect(status).to_have_text("Solved")
-    slider = preview.find("#knobs-list input[type=range]")
-    while (box := slider.bounding_box()) is None:  # the knobs are made anew with each picture
-        preview.page.wait_for_timeout(50)
-    middle = box["y"] + box["height"] / 2
-    preview.page.mouse.move(box["x"] + box["width"] * 0.25, middle)
-    preview.page.mouse.down()
-    preview.page.mouse.move(box["x"] + box["width"] * 0.9, middle, steps=4)
-    expect(status).to_have_text("Has errors (tried, not in the text)")
-    expect(status).to_have_class("status wrong")
-    expect(preview.find("#problems-list")).to_contain_text("too wide")
-    preview.page.mouse.move(box["x"] + box["width"] * 0.3, middle, steps=4)
-    expect(status).to_have_text("Solved (tried, not in the text)")
-    preview.page.keyboard.press("Escape")
-    preview.page.mouse.up()
-    expect(status).to_have_text("Solved")
-    preview.file.write_text(text.replace("w < 60", "w < 20"), "utf-8")
-    expect(status).to_have_text("Has errors")
-    preview.file.write_text(
-        text.replace("assert", "constrain body.left == 0 constrain body.right == 90 assert"), "utf-8"
-    )
-    expect(status).to_have_text(re.compile("Partly solved|Not solved"))
-    expect(status).not_to_have_class("status solved")

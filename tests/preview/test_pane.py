@@ -89,21 +89,21 @@ def test_dragging_moves_the_view_and_is_no_click(pane: Pane) -> None:
     assert pane.host.of("goto") == []
 
 
-@pytest.mark.parametrize("way", ["f", "0", "double click", "button"])
-def test_fitting(pane: Pane, way: str) -> None:
+def test_fitting(pane: Pane) -> None:
     fitted = pane.at(0, 0), pane.scale
-    pane.page.keyboard.press("+")
-    pane.page.keyboard.press("ArrowLeft")
-    assert pane.scale == pytest.approx(1.25 * fitted[1])
-    match way:
-        case "double click":
-            pane.page.mouse.dblclick(*pane.at(-20, 0))
-        case "button":
-            pane.page.get_by_role("button", name="Fit the drawing into the window").click()
-        case key:
-            pane.page.keyboard.press(key)
-    assert close(pane.at(0, 0), fitted[0])
-    assert pane.scale == pytest.approx(fitted[1])
+    button = pane.page.get_by_role("button", name="Fit the drawing into the window")
+    for fit in (
+        lambda: pane.page.keyboard.press("f"),
+        lambda: pane.page.keyboard.press("0"),
+        lambda: pane.page.mouse.dblclick(*pane.at(-20, 0)),
+        button.click,
+    ):
+        pane.page.keyboard.press("+")
+        pane.page.keyboard.press("ArrowLeft")
+        assert pane.scale == pytest.approx(1.25 * fitted[1])
+        fit()
+        assert close(pane.at(0, 0), fitted[0])
+        assert pane.scale == pytest.approx(fitted[1])
 
 
 def test_keys_move_and_zoom(pane: Pane) -> None:
@@ -217,6 +217,9 @@ def test_the_status_bar(pane: Pane) -> None:
     pane.shows(degrees=0, seconds=0.0312)
     expect(pane.find("#status-freedom")).to_have_text("fully constrained")
     expect(pane.find("#status-time")).to_have_text("31 ms")
+    pane.shows(tried=True, status="wrong")
+    expect(pane.find("#status")).to_have_text("Has errors (tried, not in the text)")
+    expect(pane.find("#status")).to_have_class("status wrong")
 
 
 def test_a_stale_picture_is_marked(pane: Pane) -> None:

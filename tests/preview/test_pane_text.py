@@ -187,20 +187,6 @@ def test_enter_takes_what_was_moved_to(pane: Pane) -> None:
     expect(pane.find(".cm-line").nth(2)).to_contain_text("rectangle(")
 
 
-@pytest.mark.parametrize("how", ["f", "button"])
-def test_the_drawing_is_fitted_again(pane: Pane, how: str) -> None:
-    fitted = pane.at(0, 0), pane.scale
-    pane.page.get_by_role("button", name="Zoom in").click()
-    pane.page.keyboard.press("Escape")
-    assert pane.scale > fitted[1]
-    if how == "f":
-        pane.find("#stage").focus()
-        pane.page.keyboard.press("f")
-    else:
-        pane.page.get_by_role("button", name="Fit the drawing into the window").click()
-    assert (pane.at(0, 0), pane.scale) == (pytest.approx(fitted[0]), pytest.approx(fitted[1]))
-
-
 def test_a_page_with_unsaved_text_asks_before_it_is_left(open_pane: Any) -> None:
     pane = open_pane()
     pane.host.hears("aidl/preview")

@@ -298,33 +298,23 @@ class _Hold(Solved):
         found = [grip for grip, _ in self.places]
         return mobility.ways(self.built, found, self.evaluate, self.written, self.movable)
 
-    def by_numbers(self) -> Iterator[Handle]:
-        for grip, at in self.places:
-            if (way := self.ways.get(grip.id)) is not None:
-                moves, does = _DOES[way.by]
-                yield Handle(grip.id, grip.path, at, moves, f"{_name(grip)}: drag to {does}")
-
     def is_slide(self, handle: str) -> bool:
         """True for a point that moves only with everything else."""
         return handle in self.ways and self.ways[handle].by == "whole"
 
-    def slides(self, handle: str) -> bool:
-        """Tells whether numbers of the text hold the whole drawing: often the solver puts it back anyway."""
-        directions = self.ways[handle].directions
+    def slides(self, grip: Grip, at: Vec) -> bool:
+        """Tells whether numbers of the text hold the whole drawing: often the solver puts it back anyway. It
+        is tried with one of the points that move along the same directions.
+        """
+        directions = self.ways[grip.id].directions
         if directions not in self._tried:
-            self._tried[directions] = self._can_slide(directions)
+            dx, dy = (sum(each) * _PROBE for each in zip(*directions, strict=True))
+            try:
+                edits = _pulled(self, grip, (at[0] + dx, at[1] + dy), STEP).edits
+            except CannotError:
+                edits = ()
+            self._tried[directions] = bool(edits)
         return self._tried[directions]
-
-    def _can_slide(self, directions: tuple[Vec, ...]) -> bool:
-        """Tries it with one of the points that move along some directions: all of them move alike."""
-        for grip, (x, y) in self.places:
-            if self.is_slide(grip.id) and self.ways[grip.id].directions == directions:
-                dx, dy = (sum(each) * _PROBE for each in zip(*directions, strict=True))
-                try:
-                    return bool(_pulled(self, grip, (x + dx, y + dy), STEP).edits)
-                except CannotError:
-                    return False
-        return False
 
 
 @lru_cache(maxsize=4)
@@ -335,19 +325,21 @@ def _hold(view: View) -> _Hold | None:
 def handles(view: View) -> list[Handle]:
     """Returns the points that can be dragged."""
     hold = _hold(view)
-    if hold is None:
-        return []
-    found = list(hold.by_numbers())
-    taken = {handle.id for handle in found if not hold.is_slide(handle.id)}
-    known = slopes(view)
-    by_param = [
-        Handle(grip.id, grip.path, at, "param", _by_param(grip, known[grip.id]))
-        for grip, at in hold.places
-        if grip.id in known and grip.id not in taken
-    ]
-    found = [h for h in found if h.id not in known or h.id in taken] + by_param
-    found = [h for h in found if not hold.is_slide(h.id) or h.moves == "param" or hold.slides(h.id)]
-    return _outermost(hold, found)
+    return [] if hold is None else _outermost(hold, _found(hold, slopes(view)))
+
+
+def _found(hold: _Hold, known: Mapping[str, Iterable[str]]) -> Iterator[Handle]:
+    """Yields them as they are written; `known` are the params that each follows."""
+    for grip, at in hold.places:
+        way = hold.ways.get(grip.id)
+        if grip.id in known and (way is None or way.by == "whole"):
+            names = ticked(path.rpartition(".")[2] for path in known[grip.id])
+            moves, does = "param", f"change {first_few(names, _NAMED, ' or others', ' or ')}"
+        elif way is not None and (way.by != "whole" or hold.slides(grip, at)):
+            moves, does = _DOES[way.by]
+        else:
+            continue
+        yield Handle(grip.id, grip.path, at, moves, f"{_name(grip)}: drag to {does}")
 
 
 def drag(view: View, handle: str, to: Vec, step: float = STEP) -> Dragged:
@@ -367,7 +359,7 @@ def drag(view: View, handle: str, to: Vec, step: float = STEP) -> Dragged:
     return Dragged(shown, at, lambda: edits)
 
 
-def _outermost(hold: _Hold, found: list[Handle]) -> list[Handle]:
+def _outermost(hold: _Hold, found: Iterable[Handle]) -> list[Handle]:
     """Returns one handle for each place, those of outer things first, and far ones before near ones."""
     depth = {grip.id: grip.depth for grip in hold.grips.values()}
     box = hold.model.root.box
@@ -387,11 +379,6 @@ def _outermost(hold: _Hold, found: list[Handle]) -> list[Handle]:
 def _name(grip: Grip) -> str:
     path = grip.path.partition(".")[2] or grip.path
     return f"{path}.{grip.name}" if grip.name else path
-
-
-def _by_param(grip: Grip, params: Iterable[str]) -> str:
-    names = ticked(path.rpartition(".")[2] for path in params)
-    return f"{_name(grip)}: drag to change {first_few(names, _NAMED, ' or others', ' or ')}"
 
 
 # --- Pulls a point towards a place with as little other motion as possible.
