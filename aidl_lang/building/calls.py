@@ -44,7 +44,6 @@ from aidl_lang.building.values import (
 from aidl_lang.building.wording import all_of
 from aidl_lang.checking.builtins import COPYING
 from aidl_lang.checking.library import signature
-from aidl_lang.checking.resolve import is_definition
 from aidl_lang.checking.rules import blocks
 from aidl_lang.checking.types import (
     ANY,
@@ -377,7 +376,7 @@ def hoist_callables(it: Interpreter, scope: Scope, statements: Iterable[ast.Stat
     for node in statements:
         if isinstance(node, ast.Alias):
             scope.aliases[node.name.text] = node.target.text
-        elif isinstance(node, ast.Callable) and is_definition(node):
+        elif ast.is_definition(node):
             if node not in it.signatures:
                 it.signatures[node] = signature(node)
             scope.define(Candidate(it.signatures[node], scope))
