@@ -44,7 +44,6 @@ from aidl_lang.building.wording import compare, conjunction, holds, negation
 from aidl_lang.checking import rules, units
 from aidl_lang.checking.builtins import WORDS
 from aidl_lang.checking.library import signature
-from aidl_lang.checking.resolve import is_definition
 from aidl_lang.checking.rules import blocks, shown
 from aidl_lang.checking.units import UNITS
 from aidl_lang.syntax import ast
@@ -451,7 +450,7 @@ def hoist_callables(it: Interpreter, scope: Scope, statements: Iterable[ast.Stat
     for node in statements:
         if isinstance(node, ast.Alias):
             scope.aliases[node.name.text] = node.target.text
-        elif isinstance(node, ast.Callable) and is_definition(node):
+        elif ast.is_definition(node):
             if node not in it.signatures:
                 it.signatures[node] = signature(node)
             scope.define(Candidate(it.signatures[node], scope))

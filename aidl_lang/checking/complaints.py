@@ -189,7 +189,9 @@ def unknown_callable(resolver: Resolver, node: ast.Call, scope: SymbolScope) -> 
         declared = (Label(value.declarations[0].span, "declared here"),) if value.declarations else ()
         hint, fix = f"`{name}` alone names it", None
         if isinstance(value.node, ast.Structure):
-            fix = _as_template(value.node)
+            if not value.node.indices:
+                behind = Span(value.node.span.source, value.node.name.span.end, value.node.name.span.end)
+                fix = Fix(f"make `{value.name}` a template", (Edit(behind, "()"),))
             listed_so = f"`{value.node.kind} {name}() {{ … }}`"
             hint = f"with a parameter list, {listed_so}, it is a template to be called"
         message = f"`{name}` is {value.kind.with_article} and cannot be called"
@@ -250,13 +252,6 @@ def _is_built_in(scope: SymbolScope, name: str) -> bool:
     """Tells whether a callable is built in and holds of nothing."""
     found = scope.called(name)
     return found is not None and found[1][0].node is None and name not in ("fixed", "overlaps")
-
-
-def _as_template(node: ast.Structure) -> Fix | None:
-    if node.indices:
-        return None
-    behind = Span(node.name.span.source, node.name.span.end, node.name.span.end)
-    return Fix(f"make `{node.name.text}` a template", (Edit(behind, "()"),))
 
 
 def declared_twice(resolver: Resolver, name: ast.Identifier, earlier: Symbol) -> None:

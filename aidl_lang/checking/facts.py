@@ -192,7 +192,10 @@ def _value_of(check: Inference, symbol: Symbol, node: ast.Node) -> Fact:
         case ast.Let(value=value):
             return check.fact(value)
         case ast.Var(value=value):
-            return Fact(_unlocked(check.fact(value).type), frozenset({ReadPlace(home)}))
+            kind = check.fact(value).type
+            if isinstance(kind, NumberType):  # that the solver finds: not whole, and if bare of any dimension
+                kind = ANY if kind.dimension is None else NumberType(kind.dimension)
+            return Fact(kind, frozenset({ReadPlace(home)}))
         case ast.Structure(indices=indices):
             place = ReadPlace(home, (symbol.name,))
             return Fact(StructureType(), frozenset({place}), node, place).listed(len(indices))
@@ -234,13 +237,6 @@ def _is_plain_range(node: ast.Expression) -> bool:
     return isinstance(node, ast.Range) and not any(
         isinstance(n, ast.Number) and n.unit is not None for n in ast.walk(node)
     )
-
-
-def _unlocked(kind: Type) -> Type:
-    """Returns the type of a number that the solver finds: not whole; ANY for a bare one, of any dimension."""
-    if isinstance(kind, NumberType):
-        return ANY if kind.dimension is None else NumberType(kind.dimension)
-    return kind
 
 
 # --- Facts about the library's own definitions. They see nothing of a program, so each is found once.

@@ -156,9 +156,7 @@ def _collect(
     for module in modules:
         for node in module.statements:
             match node:
-                case ast.FunctionDefinition() | ast.ShapeDefinition() | ast.ConstraintDefinition():
-                    definitions.setdefault(node.name.text, []).append(node)
-                case ast.Structure(parameters=parameters) if parameters is not None:
+                case _ if ast.is_definition(node):
                     definitions.setdefault(node.name.text, []).append(node)
                 case ast.Alias(name, target):
                     aliases[name.text] = target.text

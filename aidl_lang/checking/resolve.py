@@ -17,6 +17,7 @@ Members (`a.b`) depend on what `a` is; the type checker decides them and enters 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 from typing import TypeAlias, TypeVar
 
 from aidl_lang.checking import complaints
@@ -65,7 +66,8 @@ def resolve(module: ast.Module, world: World | None, library: Library) -> Resolu
         world=world,
         drawings={module.source: drawing for module, drawing in loaded.drawings.items()},
     )
-    resolution.enter_library = Resolver(resolution, is_library=True).of_library
+    in_library = Resolver(resolution, is_library=True)  # whose mistakes are not reported to the program
+    resolution.enter_library = partial(in_library.definition, scope=resolution.library_scope)
     for drawing in loaded.drawings.values():
         resolution.scopes[drawing.module] = drawing.scope(resolution.library_scope)
     for each in modules:
@@ -134,15 +136,9 @@ class Resolver:
                 self.resolution.uses[identifier] = source.values[identifier.text]
         return {identifier.text for identifier in statement.names}
 
-    def of_library(self, node: ast.Node) -> None:
-        """Resolves a definition of the library; its mistakes are not reported to the program."""
-        self.definition(node, self.resolution.library_scope)
-
     def definition(self, node: ast.Node, scope: SymbolScope) -> None:
         """Resolves the body of a structure, template, shape, constraint or function."""
-        assert isinstance(
-            node, ast.Structure | ast.ShapeDefinition | ast.ConstraintDefinition | ast.FunctionDefinition
-        )
+        assert isinstance(node, ast.Callable)
         homes = (*scope.homes, node)
         inner = SymbolScope(node, scope, homes)
         self.resolution.scopes[node] = inner
@@ -186,14 +182,10 @@ class Resolver:
             self._statement(statement, scope)
 
     def _statement(self, node: ast.Statement, scope: SymbolScope) -> None:
+        if isinstance(node, ast.Callable):
+            self._definition_statement(node, scope)
+            return
         match node:
-            case (
-                ast.Structure()
-                | ast.FunctionDefinition()
-                | ast.ShapeDefinition()
-                | ast.ConstraintDefinition()
-            ):
-                self._definition_statement(node, scope)
             case ast.Assign():
                 self._attributes(node.attributes, scope)
                 self._indices(node.indices, scope)
@@ -389,7 +381,7 @@ class Resolver:
         self.resolution.uses[name] = symbol
         if not self.is_library:
             self.resolution.symbols.append(symbol)
-        if is_definition(node):
+        if ast.is_definition(node):
             self.resolution.of_definition[node] = symbol
         return symbol
 
@@ -455,13 +447,6 @@ Branch: TypeAlias = tuple[tuple[int, bool], ...]
 _MAKERS = DERIVING | PATTERNS | frozenset({"path", *PUBLIC})
 
 
-def is_definition(node: ast.Node) -> bool:
-    """Tells whether a node is a function, shape, constraint or template, which is called."""
-    if isinstance(node, ast.Structure):
-        return node.parameters is not None
-    return isinstance(node, ast.FunctionDefinition | ast.ShapeDefinition | ast.ConstraintDefinition)
-
-
 def made_by(value: ast.Expression, scope: SymbolScope) -> SymbolKind:
     """Returns the kind of symbol that `name = value` declares: geometry, a structure, an expression."""
     match value:
@@ -512,12 +497,7 @@ class Declarer:
                 case ast.Alias(name):
                     symbol = self.resolver.enter(self.scope, name, SymbolKind.ALIAS, node)
                     self.scope.aliases[name.text] = symbol
-                case (
-                    ast.FunctionDefinition()
-                    | ast.ShapeDefinition()
-                    | ast.ConstraintDefinition()
-                    | ast.Structure()
-                ) if is_definition(node):
+                case _ if ast.is_definition(node):
                     self._callable(node, shapes)
 
     def _callable(self, node: ast.Callable, shapes: set[str]) -> None:

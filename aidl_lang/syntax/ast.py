@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Iterator
 from dataclasses import field
-from typing import Any, TypeAlias, dataclass_transform
+from typing import Any, TypeAlias, TypeGuard, dataclass_transform
 
 from aidl_lang.common.records import record
 from aidl_lang.common.source import SourceFile, Span
@@ -382,6 +382,11 @@ DEFINITIONS = (Import, Param, Let, Alias, FunctionDefinition, ShapeDefinition, C
 """Statements that may stand beside the one structure of a file without making an assembly around both."""
 
 Callable: TypeAlias = FunctionDefinition | ShapeDefinition | ConstraintDefinition | Structure
+
+
+def is_definition(node: Node) -> TypeGuard[Callable]:
+    """Tells whether a node is a function, shape, constraint or template, which is called."""
+    return node.parameters is not None if isinstance(node, Structure) else isinstance(node, Callable)
 
 
 @record()

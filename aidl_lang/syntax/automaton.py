@@ -259,10 +259,6 @@ class Trouble:
         end = self.before.end if self.before else 0
         return Span(self.source, end, end)
 
-    def token_here(self, kind: str, text: str = "") -> Token:
-        end = self.gap().end
-        return Token(kind, text or kind, end, end)
-
     def exchanged(self, *kinds: str) -> TokenRepair:
         """Returns the repair that reads signs or words in place of the token; none leaves it out."""
         tokens = tuple(self.token.but(kind, kind) for kind in kinds)
@@ -270,7 +266,8 @@ class Trouble:
 
     def put_in(self, *kinds: str) -> TokenRepair:
         """Returns the repair that reads signs or words before the token."""
-        return TokenRepair(self.position, self.position, tuple(map(self.token_here, kinds)))
+        end = self.gap().end
+        return TokenRepair(self.position, self.position, tuple(Token(k, k, end, end) for k in kinds))
 
     def indentation(self, offset: int) -> int:
         return len(line := self.source.line(self.source.position(offset)[0])) - len(line.lstrip())

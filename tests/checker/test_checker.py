@@ -101,13 +101,9 @@ def _statements() -> Iterator[tuple[str, bool]]:
             yield from ((statement.strip(), is_true) for statement in line.split(";"))
 
 
-def _braced(statement: str) -> str:
-    return f"{{ {statement} }}"
-
-
 @pytest.mark.parametrize(("statement", "is_true"), list(_statements()))
 def test_what_is_true_holds_and_nothing_else(statement: str, is_true: bool) -> None:
-    assert (_complaints(_braced(statement)) == []) == is_true
+    assert (_complaints(f"{{ {statement} }}") == []) == is_true
 
 
 def test_a_box_used_with_that_of_a_descendant_leaves_it_out() -> None:

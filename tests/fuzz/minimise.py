@@ -22,14 +22,10 @@ def minimised(text: str, holds: Callable[[str], bool], seconds: float) -> str:
     before = ""
     while text != before and time.monotonic() < until:
         before = text
-        for split in (_lines, _tokens, list):
+        for split in (lambda whole: whole.splitlines(keepends=True), _tokens, list):
             if split is not list or len(text) < 400:
                 text = "".join(_reduced(split(text), still))
     return text
-
-
-def _lines(text: str) -> list[str]:
-    return text.splitlines(keepends=True)
 
 
 def _tokens(text: str) -> list[str]:

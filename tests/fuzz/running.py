@@ -28,9 +28,9 @@ Found = tuple[str, str]
 """What is alike for findings with one cause, as far as one can tell; and the details."""
 
 
-def options(about: str | None, minutes: float | None = 2.0) -> argparse.ArgumentParser:
+def options(about: str | None) -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(description=about)
-    parser.add_argument("--minutes", type=float, default=minutes)
+    parser.add_argument("--minutes", type=float, default=2.0)
     parser.add_argument("--programs", type=int, help="so many, in place of a time")
     parser.add_argument("--seed", type=int, help="of the first; the others follow it")
     parser.add_argument("--out", type=Path, default=Path("build/fuzz"), help="where what breaks is kept")

@@ -14,13 +14,9 @@ from tests.documents import ROOT, programs
 
 
 class Vocabulary:
-    """The first `size` tokens of Mistral's tokenizer, its special ones left out.
+    """The tokens of Mistral's tokenizer, its special ones left out."""
 
-    They are in the order in which they were merged, so that a part of them is a tokenizer as well. The
-    first 256 are the bytes.
-    """
-
-    def __init__(self, size: int) -> None:
+    def __init__(self) -> None:
         import mistral_common
         from mistral_common.tokens.tokenizers.base import SpecialTokenPolicy
         from mistral_common.tokens.tokenizers.tekken import Tekkenizer
@@ -29,7 +25,7 @@ class Vocabulary:
             str(Path(mistral_common.__file__).parent / "data" / "tekken_240911.json")
         )
         first = tekken.num_special_tokens
-        pieces = range(first, min(first + size, tekken.n_words))
+        pieces = range(first, tekken.n_words)
         self.tokens = [tekken.id_to_byte_piece(i, SpecialTokenPolicy.KEEP) for i in pieces]
         self.eos_token_id = len(self.tokens)
         self.bos_token_id = None
@@ -49,10 +45,9 @@ class Vocabulary:
 class Engine:
     """llguidance at the beginning of a text, for one grammar."""
 
-    def __init__(self, grammar: str, size: int = 1_000_000) -> None:
-        self.vocabulary = vocabulary(size)
-        self.tokenizer = tokenizer(size)
-        self._matcher = llguidance.LLMatcher(self.tokenizer, grammar)
+    def __init__(self, grammar: str) -> None:
+        self.vocabulary, tokenizer = _tokenizer()
+        self._matcher = llguidance.LLMatcher(tokenizer, grammar)
         assert not self._matcher.is_error(), self._matcher.get_error()
         assert not self._matcher.get_grammar_warnings()
 
@@ -69,13 +64,9 @@ class Engine:
 
 
 @cache
-def vocabulary(size: int) -> Vocabulary:
-    return Vocabulary(size)
-
-
-@cache
-def tokenizer(size: int) -> llguidance.LLTokenizer:
-    return llguidance.LLTokenizer(llguidance.TokenizerWrapper(vocabulary(size)))
+def _tokenizer() -> tuple[Vocabulary, llguidance.LLTokenizer]:
+    vocabulary = Vocabulary()
+    return vocabulary, llguidance.LLTokenizer(llguidance.TokenizerWrapper(vocabulary))
 
 
 @cache

@@ -8,37 +8,18 @@ from aidl_lang.common.names import is_slip
 from aidl_lang.common.source import SourceFile
 from aidl_lang.pipeline import check
 
-
-@pytest.mark.parametrize(
-    ("name", "meant"),
-    [
-        ("raduis", "radius"),
-        ("gpa", "gap"),
-        ("Hole_2", "hole2"),
-        ("hloe2", "hole2"),
-        ("structure_nmber_7", "structure_number_7"),
-        ("rectanlge", "rectangle"),
-    ],
-)
-def test_a_letter_that_is_wrong(name: str, meant: str) -> None:
-    assert is_slip(name, meant)
+SLIPS = "raduis radius, gpa gap, Hole_2 hole2, hloe2 hole2, part_nmber_7 part_number_7, rectanlge rectangle"
+OTHERS = "hole3 hole2, hole hole2, plate12 plate21, x10 s10, i pi, l1 r1, ab ac, same_center_x same_center"
 
 
-@pytest.mark.parametrize(
-    ("name", "meant"),
-    [
-        ("hole3", "hole2"),
-        ("hole", "hole2"),
-        ("plate12", "plate21"),
-        ("x10", "s10"),
-        ("i", "pi"),
-        ("l1", "r1"),
-        ("ab", "ac"),
-        ("same_center_x", "same_center"),
-    ],
-)
-def test_what_may_be_another_name(name: str, meant: str) -> None:
-    assert not is_slip(name, meant)
+@pytest.mark.parametrize("pair", SLIPS.split(", "))
+def test_a_letter_that_is_wrong(pair: str) -> None:
+    assert is_slip(*pair.split())
+
+
+@pytest.mark.parametrize("pair", OTHERS.split(", "))
+def test_what_may_be_another_name(pair: str) -> None:
+    assert not is_slip(*pair.split())
 
 
 @pytest.mark.parametrize("name", ["hole3", "hole12"])

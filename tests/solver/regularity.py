@@ -24,17 +24,6 @@ def hard_rows(problem: Problem) -> list[Row]:
     return [row for c in problem.constraints if c.weight is None for row in c.rows]
 
 
-def active_rows(problem: Problem, x: np.ndarray, near: float = 1e-6) -> list[Row]:
-    """The hard equations, and the inequalities that are at their bound."""
-    rows = hard_rows(problem)
-    values = values_of(problem, [row.expression for row in rows], x)
-    return [
-        row
-        for row, value in zip(rows, values, strict=True)
-        if row.relation is Relation.EQUAL or abs(value) <= near * row.scale
-    ]
-
-
 def is_regular(problem: Problem, x: np.ndarray, free: np.ndarray | None = None) -> bool:
     """Whether the points that satisfy the active rows form a smooth surface near `x`, clearly so, as far as
     the unknowns `free` (n,) can move.
@@ -69,9 +58,12 @@ class _Surface:
     def __init__(self, problem: Problem, x: np.ndarray, free: np.ndarray | None = None) -> None:
         self.problem, self.x = problem, x
         self.unit = problem.scale * (1.0 if free is None else free)
-        self.rows = active_rows(problem, x)
-        self.nodes = [row.expression for row in self.rows]
-        self.row_scale = np.array([row.scale for row in self.rows])
+        rows = hard_rows(problem)
+        values = values_of(problem, [row.expression for row in rows], x).tolist()
+        pairs = [(row, abs(value) <= 1e-6 * row.scale) for row, value in zip(rows, values, strict=True)]
+        active = [row for row, is_tight in pairs if row.relation is Relation.EQUAL or is_tight]
+        self.nodes = [row.expression for row in active]
+        self.row_scale = np.array([row.scale for row in active])
         matrix = self._jacobian(x)
         lengths = np.linalg.norm(matrix, axis=1, keepdims=True)
         unit_rows = np.where(lengths > NOTHING, matrix / np.maximum(lengths, NOTHING), 0.0)

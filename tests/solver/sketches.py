@@ -8,7 +8,7 @@ Sketches print as what one would type to build them again.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from types import SimpleNamespace
 from typing import TypeAlias
@@ -67,15 +67,10 @@ class Link:
 
 @dataclass(frozen=True)
 class Built:
-    """
-    problem the sketch as the solver wants it
-    known   (n,) the solution that it was made around
-    where   (n,) the unknown for each coordinate of the sketch: points, radii, frames
-    """
+    """The sketch as the solver wants it, and the solution (n,) that it was made around."""
 
     problem: Problem
     known: np.ndarray
-    where: np.ndarray
 
 
 @dataclass(frozen=True)
@@ -87,9 +82,9 @@ class Sketch:
     unit: float = 1.0
     """What the solver is told is a typical length."""
 
-    def build(self, order: Sequence[int] | None = None) -> Built:
-        """The problem; its unknowns in the given order of the sketch's coordinates."""
-        return _Builder(self, order).built()
+    def build(self) -> Built:
+        """The problem; its unknowns are the sketch's coordinates: points, radii, frames."""
+        return _Builder(self).built()
 
     def problem(self) -> Problem:
         return self.build().problem
@@ -124,17 +119,14 @@ class Sketch:
 
     # -- the same in other words
 
-    def moved(self, matrix: np.ndarray, shift: Vector = (0.0, 0.0)) -> Sketch:
+    def moved(self, matrix: np.ndarray) -> Sketch:
         """The plane mapped by a similarity. Relations must be of kinds that this leaves what they are."""
         factor = math.sqrt(abs(float(np.linalg.det(matrix))))
         mirrored = float(np.linalg.det(matrix)) < 0.0
 
-        def turned(v: Vector, by: Vector = (0.0, 0.0)) -> Vector:
+        def turned(v: Vector) -> Vector:
             x, y = (matrix @ np.array(v)).tolist()
-            return x + by[0], y + by[1]
-
-        def outermost(group: int) -> Vector:
-            return shift if group == 0 else (0.0, 0.0)
+            return x, y
 
         def linked(link: Link) -> Link:
             kind, sense = KINDS[link.kind], link.sense
@@ -144,13 +136,9 @@ class Sketch:
 
         return replace(
             self,
-            points=tuple(
-                replace(p, at=turned(p.at, outermost(p.group)), off=turned(p.off)) for p in self.points
-            ),
+            points=tuple(replace(p, at=turned(p.at), off=turned(p.off)) for p in self.points),
             circles=tuple(replace(c, radius=c.radius * factor, off=c.off * factor) for c in self.circles),
-            groups=tuple(
-                replace(g, at=turned(g.at, outermost(g.parent)), off=turned(g.off)) for g in self.groups
-            ),
+            groups=tuple(replace(g, at=turned(g.at), off=turned(g.off)) for g in self.groups),
             links=tuple(map(linked, self.links)),
             unit=self.unit * factor,
         )
@@ -223,7 +211,7 @@ class Sketch:
 
 
 class _Builder:
-    def __init__(self, sketch: Sketch, order: Sequence[int] | None) -> None:
+    def __init__(self, sketch: Sketch) -> None:
         self.sketch, self.model = sketch, Model()
         m = self.model
         for group in sketch.groups:
@@ -236,13 +224,8 @@ class _Builder:
             entries.append((c.radius, c.off, {"group": group, "kept": c.kept}))
         for child, g in enumerate(sketch.groups, 1):
             entries.extend((g.at[i], g.off[i], {"group": g.parent, "frame": child}) for i in (0, 1))
-        order = range(len(entries)) if order is None else order
-        self.where = np.argsort(np.array(order, dtype=np.int64))
-        made = {
-            i: m.unknown(entries[i][0] + entries[i][1], scale=sketch.unit, **entries[i][2]) for i in order
-        }
-        self.unknowns = [made[i] for i in range(len(entries))]
-        self.known = np.array([entries[i][0] for i in order], dtype=np.float64)
+        self.unknowns = [m.unknown(at + off, scale=sketch.unit, **more) for at, off, more in entries]
+        self.known = np.array([at for at, _, _ in entries], dtype=np.float64)
 
     def point(self, index: int, holder: int = 0) -> Place:
         """As seen from the holder."""
@@ -275,7 +258,7 @@ class _Builder:
             self.tie(link, [e - next(wanted) for e in measured])
         for index in range(len(sketch.points)):
             m.observe(sketch.points[index].group, *self.point(index))
-        return Built(m.problem(), self.known, self.where)
+        return Built(m.problem(), self.known)
 
     def tie(self, link: Link, residuals: list[E]) -> None:
         kind, m = KINDS[link.kind], self.model

@@ -1,4 +1,4 @@
-"""Conflicts against others' judgement: linear programs, and least squares from many starts."""
+"""Conflicts against the judgement of linear programs, and what is said of conflicts of distances."""
 
 from __future__ import annotations
 
@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
-from scipy.optimize import least_squares
 
 from aidl_lang.solver import Settings, Solution, solve
 from aidl_lang.solver.conflicts import WORK, shortfall
@@ -91,23 +90,6 @@ class Distances:
         for (a, b), length in zip(self.pairs, self.lengths, strict=True):
             m.equal(distance(points[a], points[b]) - float(length))
         return m
-
-    def reachable(self, chosen: Sequence[int], lengths: np.ndarray) -> bool:
-        """Whether least squares from some of many starts meet the chosen distances."""
-        rng = np.random.default_rng(1)
-
-        def residuals(x: np.ndarray) -> np.ndarray:
-            at = np.vstack([self.points[: self.held], x.reshape(-1, 2)])
-            gaps = [np.hypot(*(at[a] - at[b])) for a, b in (self.pairs[i] for i in chosen)]
-            return np.array(gaps) - lengths[list(chosen)]
-
-        start = self.points[self.held :].ravel()
-        for turn in range(30):
-            aside = rng.normal(0.0, 1.0 + turn, start.shape) if turn else 0.0
-            found = least_squares(residuals, start + aside, xtol=1e-15, ftol=1e-15, gtol=1e-15)
-            if np.abs(found.fun).max() < 1e-5:
-                return True
-        return False
 
 
 def random_distances(seed: int) -> Distances:

@@ -25,11 +25,6 @@ from .build import E, Model, distance
 from .check import evaluate, jacobian
 
 
-def freedom_of(m: Model) -> Freedom:
-    problem = m.problem()
-    return analyse(problem, solve(problem))
-
-
 def redundant(freedom: Freedom) -> dict[int, tuple[int, ...]]:
     return {found.constraint: found.follows_from for found in freedom.redundant}
 
@@ -266,7 +261,7 @@ def test_what_is_too_close_to_call_is_not_guessed() -> None:
     m.equal(y)
     m.equal(y - x * 1e-7)
     m.equal(z)
-    freedom = freedom_of(m)
+    freedom = analyse(problem := m.problem(), solve(problem))
     assert (freedom.degrees, freedom.group_degrees, freedom.undecided) == (None, (None,), ((0, 1),))
     assert freedom.redundant == ()
 

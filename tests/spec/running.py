@@ -58,7 +58,8 @@ def run(case: Case) -> Outcome:
     own = [e for e in case.expectations if not e.is_variant]
     _check_diagnostics(case, own, plain.diagnostics, source, outcome)
     unexplained = case.message is None and not any(d.is_error for d in plain.diagnostics)
-    if not _status_is_said(own) and not plain.ok and unexplained:
+    is_said = any(claim.text.startswith("status:") for e in own for claim in e.claims)
+    if not is_said and not plain.ok and unexplained:
         outcome.differs(case.program.at, f"the status is {plain.status}")
     for expectation in case.expectations:
         compiled = _variant(case, expectation, source) if expectation.is_variant else plain
@@ -86,10 +87,6 @@ def _variant(case: Case, expectation: Expectation, source: SourceFile) -> pipeli
     settings = pipeline.Settings()
     settings = replace(settings, building=replace(settings.building, **limits))
     return pipeline.compile(source, MemoryWorld(case.files), dict(expectation.settings("set")), settings)
-
-
-def _status_is_said(expectations: Sequence[Expectation]) -> bool:
-    return any(claim.text.startswith("status:") for e in expectations for claim in e.claims)
 
 
 # --- Diagnostics -----------------------------------------------------------------------------------

@@ -11,7 +11,6 @@ from functools import cache, lru_cache, partial
 from aidl_lang.checking import builtins
 from aidl_lang.checking.facts import Fact, result
 from aidl_lang.checking.library import signature
-from aidl_lang.checking.resolve import is_definition
 from aidl_lang.checking.symbols import Symbol, SymbolKind
 from aidl_lang.checking.types import (
     ANY,
@@ -226,7 +225,7 @@ def importing(context: Context, files: Files | None) -> Iterator[Draft]:
 @lru_cache(maxsize=128)
 def definitions(name: str, text: str) -> tuple[ast.Callable, ...]:
     statements = parse(SourceFile(name, text)).module.statements
-    return tuple(s for s in statements if isinstance(s, ast.Callable) and is_definition(s))
+    return tuple(s for s in statements if ast.is_definition(s))
 
 
 def _draft(context: Context, file: str, node: ast.Callable) -> Draft:
