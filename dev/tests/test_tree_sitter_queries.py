@@ -23,11 +23,7 @@ from tests.editors.trees import FOLDER, language, nodes, parse
 FILES = sorted((FOLDER / "queries").rglob("*.scm"))
 COLOURED = [*sorted((ROOT / "examples").glob("*.aidl")), ROOT / "tests/editors/classes.aidl"]
 STARTS = (
-    "structure",
-    "param_declaration",
-    "let_declaration",
-    "assignment",
-    "expression_statement",
+    *("structure", "param_declaration", "let_declaration", "assignment", "expression_statement"),
     "for_statement",
 )
 FOLDABLE = {

@@ -102,17 +102,8 @@ class Row:
 
 WITHIN = range(2, 6)
 COMPARED = (
-    "valid at first",
-    "valid",
-    "attempts",
-    "requirements",
-    "editability",
-    "detached",
-    "tokens in",
-    "tokens out",
-    "seconds",
-    "CLIP",
-    "rank",
+    *("valid at first", "valid", "attempts", "requirements", "editability", "detached"),
+    *("tokens in", "tokens out", "seconds", "CLIP", "rank"),
 )
 """Figures that languages are compared by."""
 

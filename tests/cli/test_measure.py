@@ -257,16 +257,9 @@ def test_from_python() -> None:
 @pytest.mark.parametrize(
     ("text", "expected"),
     [
-        ("6 mm birch plywood", 680),
-        ("Birch-Plywood", 680),
-        ("plywood, 4mm", 600),
-        ("Stainless Steel 304", 7930),
-        ("mild_steel", 7850),
-        ("Aluminum 6061-T6", 2700),
-        ("PLEXIGLASS", 1190),
-        ("polystyrene foam", 30),
-        ("pineapple", None),
-        ("", None),
+        *(("6 mm birch plywood", 680), ("Birch-Plywood", 680), ("plywood, 4mm", 600)),
+        *(("Stainless Steel 304", 7930), ("mild_steel", 7850), ("Aluminum 6061-T6", 2700)),
+        *(("PLEXIGLASS", 1190), ("polystyrene foam", 30), ("pineapple", None), ("", None)),
     ],
 )
 def test_the_longest_name_in_the_text_counts(text: str, expected: float | None) -> None:

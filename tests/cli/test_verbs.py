@@ -210,19 +210,10 @@ def test_doc_finds_names_by_what_they_speak_of(aidl: Aidl) -> None:
 @pytest.mark.parametrize(
     ("question", "answer"),
     [
-        ("export", "aidl compile --output"),
-        ("inch", "in"),
-        ("inch", "aidl compile --units"),
-        ("dxf", "aidl compile --dxf"),
-        ("kerf", "aidl compile --kerf"),
-        ("nest", "aidl compile --nest"),
-        ("sheet", "aidl sheet"),
-        ("text size", "text"),
-        ("distance from the edges", "inside"),
-        ("countersunk", "countersink"),
-        ("cutout", "hole"),
-        ("extrude", "@thickness"),
-        ("label", "text"),
+        *(("export", "aidl compile --output"), ("inch", "in"), ("inch", "aidl compile --units")),
+        *((option, f"aidl compile --{option}") for option in ("dxf", "kerf", "nest")),
+        *(("sheet", "aidl sheet"), ("text size", "text"), ("distance from the edges", "inside")),
+        *(("countersunk", "countersink"), ("cutout", "hole"), ("extrude", "@thickness"), ("label", "text")),
     ],
 )
 def test_doc_answers_plain_questions_at_once(aidl: Aidl, question: str, answer: str) -> None:

@@ -13,19 +13,8 @@ from aidl_lang.tools.sweeping.outputs import distinct, safe
 
 HOSTILE = [
     *("../../etc/passwd", "/etc/passwd", "..", ".", "", " ", "con", "NUL.txt", "a/b\\c", "x\0y", "\n", "-rf"),
-    *(
-        "~",
-        "$(id)",
-        "</script>",
-        "\u202egpj.exe",
-        "e\u0301",
-        "👍",
-        "a" * 10_000,
-        "ß" * 500,
-        ".hidden",
-        "name.",
-    ),
-    *("a:b", "*?|", "\ud800"),
+    *("~", "$(id)", "</script>", "\u202egpj.exe", "e\u0301", "👍", "a" * 10_000, "ß" * 500),
+    *(".hidden", "name.", "a:b", "*?|", "\ud800"),
 ]
 
 

@@ -36,19 +36,9 @@ _BINARY = {"numpy": "later", "pillow": "exports"}
 _LARGE = ("scipy", "openblas")
 """Those that large programs ask for: they stay as they are."""
 _PURE = {
-    "lark": "later",
-    "svgwrite": "later",
-    "attrs": "later",
-    "cattrs": "later",
-    "lsprotocol": "later",
-    "pygls": "later",
-    "typing-extensions": "later",
-    "fonttools": "later",
-    "rectpack": "later",
-    "ezdxf": "exports",
-    "reportlab": "exports",
-    "pyparsing": "exports",
-    "charset-normalizer": "exports",
+    **dict.fromkeys(("lark", "svgwrite", "attrs", "cattrs", "lsprotocol", "pygls"), "later"),
+    **dict.fromkeys(("typing-extensions", "fonttools", "rectpack"), "later"),
+    **dict.fromkeys(("ezdxf", "reportlab", "pyparsing", "charset-normalizer"), "exports"),
 }
 """The packages that are taken as this environment has them."""
 _LEFT_OUT = re.compile(

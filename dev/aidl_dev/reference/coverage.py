@@ -65,13 +65,7 @@ _BESIDE = {
 """Other things that a call mentions."""
 
 _ALSO = (
-    "distance",
-    "horizontal_distance",
-    "vertical_distance",
-    "gap",
-    "clearance",
-    "angle",
-    "length",
+    *("distance", "horizontal_distance", "vertical_distance", "gap", "clearance", "angle", "length"),
     "radius",
 )
 """Measures, which constrain when compared."""

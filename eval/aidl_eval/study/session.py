@@ -124,19 +124,8 @@ class Session:
         if any(earlier.id not in given for earlier in asked[:number]):
             raise RefusedError("There is no such page yet.")
         said = None if ranking is None else tuple(tuple(names[n] for n in group) for group in ranking)
-        base = Answer(
-            rater,
-            sheet.prompt,
-            sheet.run,
-            sheet.id,
-            self.pictures,
-            tuple(names),
-            sheet.undrawn,
-            said,
-            number + 1,
-            len(asked),
-            now(),
-        )
+        about = rater, sheet.prompt, sheet.run, sheet.id, self.pictures, tuple(names), sheet.undrawn
+        base = Answer(*about, said, number + 1, len(asked), now())
         plain = [self._plain(base, each) for each in _passed(order, sheet) if each.id not in given]
         self.answers.add([*plain, base])
 

@@ -177,14 +177,7 @@ def test_strangers_are_refused(page: Site) -> None:
 @pytest.mark.parametrize(
     "content",
     [
-        b"",
-        b"null",
-        b"[]",
-        b"7",
-        b"{",
-        b"\xff",
-        b"[" * 4000,
-        b'{"a":' * 800,
+        *(b"", b"null", b"[]", b"7", b"{", b"\xff", b"[" * 4000, b'{"a":' * 800),
         b'{"rater": "north"}' + b" " * 5000,
     ],
 )
@@ -211,22 +204,11 @@ def test_hostile_names_are_refused(page: Site, rater: object) -> None:
 @pytest.mark.parametrize(
     "change",
     [
-        {"number": None},
-        {"number": True},
-        {"number": 0.0},
-        {"number": -1},
-        {"number": 10**30},
-        {"id": None},
-        {"id": "0" * 16},
-        {"ranking": 7},
-        {"ranking": []},
-        {"ranking": [[0, 1, 2], []]},
-        {"ranking": [[0], [1]]},
-        {"ranking": [[0], [1], [1]]},
-        {"ranking": [[0], [1], [True]]},
-        {"ranking": [["0"], ["1"], ["2"]]},
-        {"ranking": [[0], [1], [2.0]]},
-        {"ranking": {"0": 1}},
+        *({"number": number} for number in (None, True, 0.0, -1, 10**30)),
+        *({"id": sheet} for sheet in (None, "0" * 16)),
+        *({"ranking": ranking} for ranking in (7, [], [[0, 1, 2], []], [[0], [1]], [[0], [1], [1]])),
+        *({"ranking": [[0], [1], [last]]} for last in (True, 2.0)),
+        *({"ranking": ranking} for ranking in ([["0"], ["1"], ["2"]], {"0": 1})),
         {"rater": "\u202e"},
     ],
 )

@@ -16,22 +16,9 @@ from pyodide.ffi import to_js
 LATER = "later.pack"
 EXPORTS = "exports.pack"
 _OF = {
-    "aidl_lang": LATER,
-    "numpy": LATER,
-    "attr": LATER,
-    "attrs": LATER,
-    "cattrs": LATER,
-    "lark": LATER,
-    "lsprotocol": LATER,
-    "pygls": LATER,
-    "svgwrite": LATER,
-    "fontTools": LATER,
-    "rectpack": LATER,
-    "PIL": EXPORTS,
-    "charset_normalizer": EXPORTS,
-    "ezdxf": EXPORTS,
-    "pyparsing": EXPORTS,
-    "reportlab": EXPORTS,
+    **dict.fromkeys(("aidl_lang", "numpy", "attr", "attrs", "cattrs", "lark", "lsprotocol", "pygls"), LATER),
+    **dict.fromkeys(("svgwrite", "fontTools", "rectpack"), LATER),
+    **dict.fromkeys(("PIL", "charset_normalizer", "ezdxf", "pyparsing", "reportlab"), EXPORTS),
 }
 """The packs of packages, as far as they are not in the first."""
 
