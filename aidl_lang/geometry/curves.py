@@ -7,15 +7,13 @@ import sys
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import fields, replace
 from operator import attrgetter
-from typing import TYPE_CHECKING, Any, ClassVar, Self, TypeAlias, TypeVar, get_args
+from typing import Any, ClassVar, Self, TypeAlias, TypeVar, get_args
 
 import numpy as np
 from numpy.typing import NDArray
 
 from aidl_lang.common.records import record
 
-if TYPE_CHECKING:
-    from aidl_lang.common.drawings import Stroke
 
 T = TypeVar("T")
 Vec: TypeAlias = tuple[float, float]
@@ -526,38 +524,6 @@ def meeting(a: Line, b: Line) -> Vec | None:
         return None
     t = ((b.start[0] - a.start[0]) * vy - (b.start[1] - a.start[1]) * vx) / cross
     return a.start[0] + t * ux, a.start[1] + t * uy
-
-
-# --- Strokes of drawings of other programs.
-
-_ROUND = 1e-8
-"""Difference of the radii of an ellipse, relative to them, below which it is a circle."""
-_FLAT = 1e-12
-
-
-def curve_of(stroke: Stroke) -> Piece:
-    """Returns the exact curve of a stroke."""
-    if isinstance(stroke, tuple):
-        return Line(*stroke) if len(stroke) == 2 else Bezier(*stroke)
-    (ux, uy), (vx, vy) = stroke.u, stroke.v
-    # Conjugate half-diameters become those of the axes by a shift of the parameter.
-    shift = 0.5 * math.atan2(2 * (ux * vx + uy * vy), ux * ux + uy * uy - vx * vx - vy * vy)
-    c, s = math.cos(shift), math.sin(shift)
-    long, short = (ux * c + vx * s, uy * c + vy * s), (vx * c - ux * s, vy * c - uy * s)
-    sense = math.copysign(1.0, long[0] * short[1] - long[1] * short[0])
-    rx, ry = math.hypot(*long), math.hypot(*short)
-    if ry <= _FLAT * rx:
-        return Line(stroke.start, stroke.end)
-    angle, sweep = math.atan2(long[1], long[0]), sense * stroke.sweep
-    if rx - ry <= _ROUND * rx:
-        radius = (rx + ry) / 2
-        if stroke.is_whole:
-            return Circle(stroke.center, radius)
-        return Arc(stroke.center, radius, stroke.start, stroke.end, sweep)
-    if stroke.is_whole:
-        return Ellipse(stroke.center, rx, ry, angle)
-    first = sense * (stroke.first - shift)
-    return EllipseArc(stroke.center, rx, ry, angle, stroke.start, stroke.end, first, sweep)
 
 
 # --- Boxes.

@@ -11,14 +11,25 @@ from typing import TYPE_CHECKING, TypeAlias
 from aidl_lang.building.model import Geometry
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
-from aidl_lang.geometry.curves import Piece, Vec, curve_of, image, in_runs
+from aidl_lang.geometry.curves import (
+    Arc,
+    Bezier,
+    Circle,
+    Ellipse,
+    EllipseArc,
+    Line,
+    Piece,
+    Vec,
+    image,
+    in_runs,
+)
 from aidl_lang.geometry.network import Joined, Network, Use, with_finer_chords
 from aidl_lang.geometry.region import Polygon, Region, polygon_area
 from aidl_lang.geometry.sections import Section, fill, trace, union
 from aidl_lang.geometry.solved import Scalar, SolvedGeometry, Values, described
 
 if TYPE_CHECKING:
-    from aidl_lang.common.drawings import Element
+    from aidl_lang.common.drawings import Element, Stroke
 
 # --- Outlines of drawings of other programs, as exact curves, and what they enclose.
 #
@@ -34,7 +45,34 @@ ENGRAVED = "engraved_contours"
 Crossing: TypeAlias = tuple[SolvedGeometry, tuple[Vec, ...]]
 """A shape of a file, and the places where it crosses itself."""
 
-# --- Curves ----------------------------------------------------------------------------------------
+_ROUND = 1e-8
+"""Difference of the radii of an ellipse, relative to them, below which it is a circle."""
+_FLAT = 1e-12
+
+
+def curve_of(stroke: Stroke) -> Piece:
+    """Returns the exact curve of a stroke."""
+    if isinstance(stroke, tuple):
+        return Line(*stroke) if len(stroke) == 2 else Bezier(*stroke)
+    (ux, uy), (vx, vy) = stroke.u, stroke.v
+    # Conjugate half-diameters become those of the axes by a shift of the parameter.
+    shift = 0.5 * math.atan2(2 * (ux * vx + uy * vy), ux * ux + uy * uy - vx * vx - vy * vy)
+    c, s = math.cos(shift), math.sin(shift)
+    long, short = (ux * c + vx * s, uy * c + vy * s), (vx * c - ux * s, vy * c - uy * s)
+    sense = math.copysign(1.0, long[0] * short[1] - long[1] * short[0])
+    rx, ry = math.hypot(*long), math.hypot(*short)
+    if ry <= _FLAT * rx:
+        return Line(stroke.start, stroke.end)
+    angle, sweep = math.atan2(long[1], long[0]), sense * stroke.sweep
+    if rx - ry <= _ROUND * rx:
+        radius = (rx + ry) / 2
+        if stroke.is_whole:
+            return Circle(stroke.center, radius)
+        return Arc(stroke.center, radius, stroke.start, stroke.end, sweep)
+    if stroke.is_whole:
+        return Ellipse(stroke.center, rx, ry, angle)
+    first = sense * (stroke.first - shift)
+    return EllipseArc(stroke.center, rx, ry, angle, stroke.start, stroke.end, first, sweep)
 
 
 def parts_of(
