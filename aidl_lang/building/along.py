@@ -16,6 +16,7 @@ from aidl_lang.building.curves import (
     gauss,
     is_reflected,
     number,
+    pieces,
     sweep,
     view,
     xy,
@@ -504,8 +505,8 @@ def way_along(curves: Sequence[Geometry], here: Structure) -> Way | None:
 
 def crossings(curves: Sequence[Geometry], here: Structure, axis: int, at: Expression) -> list[Met]:
     """Returns the places of curves that have an x (`axis` 0) or a y, in order of the other coordinate."""
-    pieces = (pair[0] for c in curves for pair in _stretches(c, here))
-    found = (met for piece in pieces for met in piece.crossings(axis, at))
+    stretches = (pair[0] for c in curves for pair in _stretches(c, here))
+    found = (met for piece in stretches for met in piece.crossings(axis, at))
     return sorted(found, key=lambda met: met[0][1 - axis].value)
 
 
@@ -523,8 +524,7 @@ def _stretches(curve: Geometry, here: Structure) -> list[_Pair]:
         axes = (number(core[name]) for name in ("rx", "ry", "angle"))
         cubics = of_ellipse(xy(core["center"]), *axes, clockwise=is_reflected(curve.owner, here))
     else:
-        a, b, c, d = (xy(view(curve, here)[name]) for name in ("p0", "p1", "p2", "p3"))
-        cubics = [Cubic((a, b, c, d))]
+        cubics = [Cubic(points) for points in pieces(curve, here) if len(points) == 4]
     return [(c, c.turned_round) for c in cubics if c.length.value > 0]
 
 

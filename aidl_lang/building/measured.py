@@ -13,7 +13,7 @@ from functools import partial, reduce
 
 from aidl_lang.building import expression as ex
 from aidl_lang.building.along import Cubic
-from aidl_lang.building.curves import NOWHERE, clockwise, gauss, number, sweep, view, xy
+from aidl_lang.building.curves import NOWHERE, clockwise, gauss, number, pieces, sweep, view, xy
 from aidl_lang.building.expression import Expression, Place
 from aidl_lang.building.model import Geometry, Measurement, Structure
 from aidl_lang.common.records import record
@@ -210,8 +210,8 @@ def _around(rx: Expression, ry: Expression) -> Expression:
 
 
 def _bezier(g: Geometry, here: Structure) -> _Side:
-    core = view(g, here)
-    a, b, c, d = points = tuple(xy(core[name]) for name in ("p0", "p1", "p2", "p3"))
+    (points,) = pieces(g, here)
+    a, b, c, d = points
     shares = ((6, a, b), (3, a, c), (1, a, d), (3, b, c), (3, b, d), (6, c, d))
     area = reduce(operator.add, (w / 20 * _cross(p, q) for w, p, q in shares))
     moments = NOWHERE

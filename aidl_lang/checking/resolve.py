@@ -42,7 +42,7 @@ from aidl_lang.checking.symbols import (
     library_scope,
     word_meant,
 )
-from aidl_lang.checking.types import PARAMETER_TYPES, PUBLIC, Signature
+from aidl_lang.checking.types import PARAMETER_TYPES, PUBLIC, Signature, type_named
 from aidl_lang.common.diagnostics import MOST_ERRORS, Diagnostic, Edit, Fix, Label, ordered
 from aidl_lang.common.names import fold, nearest
 from aidl_lang.common.prose import ticked
@@ -518,7 +518,7 @@ class Declarer:
         found: list[str] = []
         for parameter in node.parameters or ():
             word = parameter.type
-            if word is None or fold(word.text) in PARAMETER_TYPES:
+            if word is None or type_named(word.text) is not None:
                 continue
             called = self.scope.called(word.text)
             is_shape = called is not None and any(isinstance(s.node, ast.ShapeDefinition) for s in called[1])

@@ -285,6 +285,8 @@ PARAMETER_TYPES: Mapping[str, Type] = {
 }
 """The words that may stand behind `:` in a parameter; the name of a shape may stand there too."""
 
+_BY_SPELLING = {fold(word): each for word, each in PARAMETER_TYPES.items()}
+
 PEERS = ("peer", "peers")
 """Types of parameters whose things, or members of a list, a constraint does not hold by their place."""
 
@@ -297,7 +299,7 @@ def parameter_type(parameter: ast.Parameter, shapes: Iterable[str] = ()) -> Type
 def type_named(word: str, shapes: Iterable[str] = ()) -> Type | None:
     """Returns the type that a word or the name of a shape stands for; None if it is unknown."""
     word = fold(word)
-    if (known := PARAMETER_TYPES.get(word)) is not None:
+    if (known := _BY_SPELLING.get(word)) is not None:
         return known
     return next((GeometryType(shape) for shape in shapes if fold(shape) == word), None)
 

@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 
 from aidl_lang.common.records import record
 
-
 T = TypeVar("T")
 Vec: TypeAlias = tuple[float, float]
 Floats: TypeAlias = NDArray[np.float64]
