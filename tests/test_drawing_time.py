@@ -19,7 +19,7 @@ from aidl_lang.pipeline import Compiled
 from aidl_lang.tools.agents.calling import answer
 from aidl_lang.tools.agents.tools import Tools
 from aidl_lang.tools.cli import main
-from aidl_lang.tools.ide.actions import drawn_alike
+from aidl_lang.tools.ide.actions import extractions
 from aidl_lang.tools.ide.dragging import drag, handles
 from aidl_lang.tools.ide.preview import preview
 from aidl_lang.tools.ide.references import CannotError
@@ -185,5 +185,6 @@ def test_what_cannot_be_drawn_is_not_dragged() -> None:
 
 @pytest.mark.usefixtures("hurried")
 def test_an_action_that_cannot_be_tried_is_refused() -> None:
+    (extraction,) = extractions(view(), PLATES.index("lower"))
     with pytest.raises(CannotError, match=r"writing the drawing as `\.svg` takes more than 0 seconds"):
-        drawn_alike(view(), view())
+        extraction.make()

@@ -8,8 +8,6 @@ from collections.abc import Iterator, Sequence
 from functools import cache, lru_cache
 from itertools import pairwise
 
-import numpy as np
-
 from aidl_lang.common.font_files import Curve, FontFile, Vec, point_of
 from aidl_lang.common.records import record
 from aidl_lang.common.resources import resource
@@ -58,6 +56,8 @@ def silhouette(curves: Sequence[Curve]) -> tuple[Curve, ...]:
     """Returns the corners of the convex hull of curves, each alone, and the curves of which a part may lie on
     it. In every direction the furthest point of all belongs to one of these.
     """
+    import numpy as np
+
     ordered = sorted({p for curve in curves for p in _samples(curve)})
     corners = [*_chain(ordered)[:-1], *_chain(ordered[::-1])[:-1]]
     start = np.array(corners).reshape(-1, 2)

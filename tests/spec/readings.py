@@ -59,8 +59,8 @@ class Reader(View):
 
     def member(self, value: Any, name: str) -> Any:
         if name == "rotation" and isinstance(value, Node):
-            around = value.parent or value
-            return float(angle((value.axes[0] - value.origin) / (around.axes[0] - around.origin)))
+            around = value.parent or value  # what is mirrored has its x turned over
+            return float(angle((value.axes[1] - value.origin) / (around.axes[1] - around.origin)))
         return super().member(value, name)
 
     def call(self, e: ast.Call, scope: Scope) -> Any:
