@@ -524,7 +524,7 @@ def _stretches(curve: Geometry, here: Structure) -> list[_Pair]:
         axes = (number(core[name]) for name in ("rx", "ry", "angle"))
         cubics = of_ellipse(xy(core["center"]), *axes, clockwise=is_reflected(curve.owner, here))
     else:
-        cubics = [Cubic(points) for points in pieces(curve, here) if len(points) == 4]
+        cubics = [Cubic((a, b, c, d)) for a, b, c, d in pieces(curve, here)]
     return [(c, c.turned_round) for c in cubics if c.length.value > 0]
 
 
