@@ -10,6 +10,7 @@ from itertools import accumulate, pairwise
 from aidl_lang.building import expression as ex
 from aidl_lang.building.curves import (
     NOWHERE,
+    Piece,
     clockwise,
     direction,
     distance,
@@ -60,7 +61,7 @@ class _Span:
 class Cubic:
     """A cubic that is walked from its start on."""
 
-    points: tuple[Place, Place, Place, Place]
+    points: Piece
 
     @property
     def start(self) -> Place:
@@ -232,31 +233,26 @@ def _weighed(points: Sequence[Place], weights: Sequence[Expression]) -> Place:
     return sum((w * p for p, w in zip(points, weights, strict=True)), NOWHERE)
 
 
-def of_ellipse(
-    center: Place, rx: Expression, ry: Expression, angle: Expression, *, clockwise: bool
-) -> list[Cubic]:
-    """Returns the cubics of an ellipse, from the end of its first half axis on."""
+def _of_ellipse(curve: Geometry, here: Structure) -> Iterator[Piece]:
+    """Yields the control points of the cubics of an ellipse, from the end of its first half axis on."""
+    core = view(curve, here)
+    rx, ry = number(core["rx"]), number(core["ry"])
+    facing = ex.towards(number(core["angle"]))
     count = 4 * _QUARTER
-    turn = math.tau / count * (-1 if clockwise else 1)
+    turn = math.tau / count * (-1 if is_reflected(curve.owner, here) else 1)
     handle = 4 / 3 * math.tan(turn / 4)
-    facing = ex.towards(angle)
 
     def place(u: float, v: float) -> Place:
-        return center + Place(u * rx, v * ry).turned(facing)
+        return xy(core["center"]) + Place(u * rx, v * ry).turned(facing)
 
-    found = []
     for k in range(count):
         (c0, s0), (c1, s1) = ((math.cos(a), math.sin(a)) for a in (turn * k, turn * (k + 1)))
-        start, end = place(c0, s0), place(c1, s1)
         inner = place(c0 - handle * s0, s0 + handle * c0), place(c1 + handle * s1, s1 - handle * c1)
-        found.append(Cubic((start, *inner, end)))
-    return found
+        yield place(c0, s0), *inner, place(c1, s1)
 
 
 KINDS = frozenset({"line", "arc", "circle"})
-"""Curves whose length is an expression."""
-FREE_KINDS = frozenset({"bezier", "ellipse"})
-"""Curves that are walked as cubics."""
+"""Curves whose length is an expression; others are walked as the cubics and lines that they are made of."""
 
 _SMOOTH = 1e-4  # degrees by which what goes on without a corner may turn
 _BESIDE = 0.125  # share of a stretch from its ends where a place may come to lie on the one beside it
@@ -514,18 +510,21 @@ _Pair = tuple["Stretch | Cubic", "Stretch | Cubic"]
 
 
 def _stretches(curve: Geometry, here: Structure) -> list[_Pair]:
-    """Returns a curve in stretches, forwards and backwards; those without length are left out."""
+    """Returns a curve in stretches, forwards and backwards; cubics without length are left out."""
     if curve.type == "circle":
         return [(_circle(curve, here), _circle(curve, here))]
-    if curve.type not in FREE_KINDS:
-        return [(_stretch(curve, here), _stretch(curve, here, reverse=True))]
-    if curve.type == "ellipse":
-        core = view(curve, here)
-        axes = (number(core[name]) for name in ("rx", "ry", "angle"))
-        cubics = of_ellipse(xy(core["center"]), *axes, clockwise=is_reflected(curve.owner, here))
-    else:
-        cubics = [Cubic((a, b, c, d)) for a, b, c, d in pieces(curve, here)]
-    return [(c, c.turned_round) for c in cubics if c.length.value > 0]
+    if curve.type == "arc":
+        return [(_arc(curve, here), _arc(curve, here, reverse=True))]
+    of = _of_ellipse(curve, here) if curve.type == "ellipse" else pieces(curve, here)
+    pairs = [(_walk(piece), _walk(piece[::-1])) for piece in of]
+    return [pair for pair in pairs if isinstance(pair[0], Stretch) or pair[0].length.value > 0]
+
+
+def _walk(piece: Piece) -> Stretch | Cubic:
+    if len(piece) == 4:
+        return Cubic(piece)
+    start, end = piece
+    return Stretch(start, (end - start).direction, (end - start).length)
 
 
 def _walked(stretch: Stretch | Cubic, rest: list[_Pair], near: float) -> list[Stretch | Cubic]:
@@ -552,11 +551,9 @@ def _circle(curve: Geometry, here: Structure, *, inside: bool | None = None) -> 
     return Stretch(Place(center.x + radius, center.y), turn * 90.0, length, center, bend)
 
 
-def _stretch(curve: Geometry, here: Structure, *, reverse: bool = False) -> Stretch:
+def _arc(curve: Geometry, here: Structure, *, reverse: bool = False) -> Stretch:
     core = view(curve, here)
-    start, end = (core["end"], core["start"]) if reverse else (core["start"], core["end"])
-    if curve.type == "line":
-        return Stretch(xy(start), direction(start, end), distance(start, end))
+    start = core["end"] if reverse else core["start"]
     is_clockwise = clockwise(curve, here)
     radius = distance(core["center"], core["start"])
     turn = ex.constant(-1.0 if is_clockwise != reverse else 1.0)

@@ -80,9 +80,10 @@ def _loops(geometry: Geometry, here: Structure) -> list[tuple[int, list[_Side]]]
     for primitive in geometry.primitives(even_construction=True):
         if primitive.type == "point":
             continue
-        if primitive.type not in _SIDES or primitive.recipe is not None or primitive.finishes:
+        made = [] if primitive.recipe is not None or primitive.finishes else _sides(primitive, here)
+        if not made:
             return None
-        sides.append(_SIDES[primitive.type](primitive, here))
+        sides += made
     loops = list(_chained(sides)) if sides and not geometry.finishes else []
     if not all(loops) or not loops:
         return None
@@ -145,9 +146,14 @@ def _cross(a: Place, b: Place) -> Expression:
 _square = partial(ex.apply, "square")
 
 
-def _line(g: Geometry, here: Structure) -> _Side:
-    core = view(g, here)
-    a, b = xy(core["start"]), xy(core["end"])
+def _sides(g: Geometry, here: Structure) -> list[_Side]:
+    """Returns the pieces of a primitive; none if they have no formula."""
+    if g.type in _ROUND:
+        return [_ROUND[g.type](g, here)]
+    return [_line(*piece) if len(piece) == 2 else _cubic(*piece) for piece in pieces(g, here)]
+
+
+def _line(a: Place, b: Place) -> _Side:
     way = b - a
 
     def squares(p: Expression, q: Expression) -> Expression:
@@ -209,8 +215,7 @@ def _around(rx: Expression, ry: Expression) -> Expression:
     return math.tau * total / a
 
 
-def _bezier(g: Geometry, here: Structure) -> _Side:
-    (points,) = pieces(g, here)
+def _cubic(*points: Place) -> _Side:
     a, b, c, d = points
     shares = ((6, a, b), (3, a, c), (1, a, d), (3, b, c), (3, b, d), (6, c, d))
     area = reduce(operator.add, (w / 20 * _cross(p, q) for w, p, q in shares))
@@ -228,5 +233,4 @@ def _bezier(g: Geometry, here: Structure) -> _Side:
     return _Side((a, d), Cubic((a, b, c, d)).length, area, moments, sampled)
 
 
-_SIDES = {"line": _line, "arc": _arc, "circle": _round, "ellipse": _round, "bezier": _bezier}
-"""The formulas of each kind of piece."""
+_ROUND = {"arc": _arc, "circle": _round, "ellipse": _round}

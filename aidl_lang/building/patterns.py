@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterable, Sequence
 from itertools import pairwise, product
 
 from aidl_lang.building import expression as ex
-from aidl_lang.building.along import FREE_KINDS, KINDS, Way, crossings, reading_way, way_along, within
+from aidl_lang.building.along import KINDS, Way, crossings, reading_way, way_along, within
 from aidl_lang.building.boxes import box_of
 from aidl_lang.building.coerce import whole
 from aidl_lang.building.construct import bridge, is_filled, positions, size, typeset
@@ -39,6 +39,7 @@ from aidl_lang.building.values import (
     point,
     spliced,
 )
+from aidl_lang.checking.types import PUBLIC
 from aidl_lang.checking.units import ANGLE, LENGTH
 from aidl_lang.common.lettering import ALIGNMENTS
 from aidl_lang.common.prose import with_article
@@ -347,7 +348,7 @@ def _curves(call: _Call) -> list[Geometry] | None:
     given = [v for v in spliced(call.a["curve"]) if isinstance(v, Geometry)]
     drawn = [p for g in given for p in g.primitives(even_construction=True)]
     curves = [p for p in drawn if p.type != "point"]
-    other = next((c.type for c in curves if c.type not in KINDS | FREE_KINDS), None)
+    other = next((c.type for c in curves if c.type not in PUBLIC), None)
     if other is not None or any(g.recipe is not None for g in given):
         hint = "follow a `path` or `polyline` near it, or what the outline is made of"
         call.wrong(f"`along` follows curves, and this is {with_article(given[0].type)}", hint)

@@ -38,8 +38,12 @@ def indexed(parts: dict[str, Any], name: str) -> list[dict[str, Any]]:
 
 
 def curve(part: dict[str, Any], t: float) -> complex:
-    """A point of a line, an arc or a Bézier at a share 0 to 1 of its parameter."""
+    """A point of a curve at a share 0 to 1 of its parameter."""
     match part["type"]:
+        case "circle" | "ellipse":
+            rx, ry = (part[k] if k in part else part["radius"] for k in ("rx", "ry"))
+            at = complex(rx * math.cos(math.tau * t), ry * math.sin(math.tau * t))
+            return complex(*part["center"]) + at * cmath.rect(1, math.radians(part.get("angle", 0)))
         case "line":
             a, b = (complex(*part[k]) for k in ("start", "end"))
             return a + (b - a) * t

@@ -20,6 +20,7 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
+from aidl_lang.checking.types import PRIMITIVES
 from aidl_lang.common.prose import counted, first_few, ticked
 from aidl_lang.common.records import record
 from aidl_lang.compiled import Compiled
@@ -34,7 +35,7 @@ _SAME_BOX = 1e-5
 """How near two boxes are that are the same, as a part of the size of the drawing."""
 _TOUCHING = 1e-4
 """The width of what two bodies share that only touch, as a part of that size."""
-_OPEN_TYPES = frozenset(("line", "arc", "bezier", "point"))
+_OPEN_TYPES = frozenset(kind for kind, each in PRIMITIVES.items() if "end" in each.types) | {"point"}
 _BY_HAND = frozenset(("line", "arc", "path", "polygon"))
 """Geometry whose edges are written one by one."""
 _MOST_BOXES = 300
