@@ -29,8 +29,9 @@ def drawn(text: str) -> dict[str, NDArray[Any]]:
 
 
 def points(geometry: dict[str, Any]) -> list[complex]:
-    parts = list(geometry.get("parts", {}).values()) or [geometry]
-    return [curve(part, k / 400) for part in parts for k in range(401)]
+    if parts := geometry.get("parts"):
+        return [p for part in parts.values() for p in points(part)]
+    return [curve(geometry, k / 400) for k in range(401)]
 
 
 def farthest(a: NDArray[Any], b: NDArray[Any]) -> float:
