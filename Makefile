@@ -65,7 +65,7 @@ site: $(READY) $(SITE)/.ready ## build the site into build/site, the playground 
 	$(BIN)/python -m aidl_site . --builder $(SITE)/bin/zensical $(if $(ADDRESS),--address $(ADDRESS)) $(if $(PLAYGROUND),--playground)
 	@$(if $(PLAYGROUND),$(MAKE) --no-print-directory site-playground && $(BIN)/python -m aidl_site . --check)
 
-pane: ## bundle the editor of the preview's pane: aidl_lang/tools/preview/pane/editor.js
+pane: ## bundle the editor of the preview's pane: server/aidl_server/preview/pane/editor.js
 	cd editors/codemirror && npm ci --silent --no-audit --no-fund && npm run --silent pane
 
 editors: vscode ## check all that is built with Node: the preview's pane, the CodeMirror package, the extension
@@ -128,7 +128,7 @@ test-playground: $(READY) ## try the playground in Chromium; installs Pyodide in
 
 lock: $(READY) ## renew requirements-dev.lock
 	$(BIN)/python -m pip install --quiet pip-tools
-	CUSTOM_COMPILE_COMMAND="make lock" $(BIN)/pip-compile --quiet --upgrade --extra dev --extra nest --extra step --extra 3mf --extra models --extra mcp --extra editor --extra cluster --extra parquet --generate-hashes --allow-unsafe --strip-extras \
+	CUSTOM_COMPILE_COMMAND="make lock" $(BIN)/pip-compile --quiet --upgrade --extra dev --extra nest --extra step --extra 3mf --extra models --extra mcp --extra cluster --extra parquet --generate-hashes --allow-unsafe --strip-extras \
 		--no-emit-find-links --no-emit-index-url --output-file requirements-dev.lock pyproject.toml
 	$(BIN)/python -c "import tomllib; print(*tomllib.load(open('pyproject.toml', 'rb'))['dependency-groups']['site'])" \
 		| CUSTOM_COMPILE_COMMAND="make lock" $(BIN)/pip-compile --quiet --upgrade --generate-hashes --allow-unsafe --strip-extras \
@@ -143,10 +143,10 @@ $(SITE)/.ready: requirements-site.lock
 	@touch $@
 
 # Done again only when the lock or the project file is newer than the last time.
-$(READY): requirements-dev.lock pyproject.toml eval/pyproject.toml dev/pyproject.toml web/pyproject.toml
+$(READY): requirements-dev.lock pyproject.toml server/pyproject.toml eval/pyproject.toml dev/pyproject.toml web/pyproject.toml
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "AIDL needs Python 3.11 or newer")'
 	@echo "Setting up $(VENV) …"
 	@test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
 	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-compile --require-hashes -r requirements-dev.lock
-	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation --editable . --editable eval --editable dev --editable web
+	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation --editable . --editable server --editable eval --editable dev --editable web
 	@touch $@

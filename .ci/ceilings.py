@@ -16,7 +16,14 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 PROJECT = ROOT / "pyproject.toml"
-PACKAGES = ("aidl_lang", "dev/aidl_dev", "dev/aidl_site", "eval/aidl_eval", "web/aidl_web")
+PACKAGES = (
+    "aidl_lang",
+    "dev/aidl_dev",
+    "dev/aidl_site",
+    "eval/aidl_eval",
+    "server/aidl_server",
+    "web/aidl_web",
+)
 
 
 def lines(root: Path) -> dict[str, int]:
@@ -30,9 +37,9 @@ def lines(root: Path) -> dict[str, int]:
 
 
 def _room(folder: str) -> str:
-    """Returns the folder of a package, or of its tools, that a folder lies in."""
+    """Returns the folder of a package that a folder lies in; of tools and of the server, the one below."""
     parts = folder.split("/")
-    return "/".join(parts[: 3 if parts[:2] == ["aidl_lang", "tools"] else 2])
+    return "/".join(parts[: 3 if parts[:2] in (["aidl_lang", "tools"], ["server", "aidl_server"]) else 2])
 
 
 def told(rooms: dict[str, int], ceilings: dict[str, int]) -> list[str]:

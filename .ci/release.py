@@ -19,6 +19,7 @@ PLACES = {
     "aidl_lang/version.py": r'__version__ = "([^"]+)"',
     "dev/pyproject.toml": r'^version = "([^"]+)"',
     "eval/pyproject.toml": r'^version = "([^"]+)"',
+    "server/pyproject.toml": r'^version = "([^"]+)"',
     "editors/codemirror/package.json": r'"version": "([^"]+)"',
     "editors/tree-sitter-aidl/package.json": r'"version": "([^"]+)"',
     "editors/tree-sitter-aidl/tree-sitter.json": r'"version": "([^"]+)"',

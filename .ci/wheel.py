@@ -3,7 +3,8 @@ virtualenv of its own, with a home in which there is nothing.
 
     .venv/bin/python .ci/wheel.py [--keep FOLDER]
 
-First without any extra, then with each of them, from the source archive, then with `aidl-eval` beside it.
+First without any extra, then with each of them, from the source archive and with `aidl-server` beside it for
+one of them, then with `aidl-eval`.
 Every command must end with the code that is expected of it, say what is expected, and show no traceback; none
 may write into the installation, or keep anything of AIDL's in the home. Prints the seconds of each, and those
 of the processor.
@@ -458,7 +459,8 @@ def installed_and_run(folder: Path) -> Installation:
     subprocess.run(command, cwd=copy, check=True, capture_output=True)
     (archive,) = archives.iterdir()
     here.pip("uninstall", "--yes", "aidl-lang")
-    here.put(f"{archive}[{','.join(EXTRAS)}]")
+    here.pip("wheel", "--no-deps", "--wheel-dir", folder / "beside", copy / "server")
+    here.put("--find-links", folder / "beside", f"{archive}[{','.join(EXTRAS)}]")
     rebuilt = state(here.package)
     missing = sorted(before.keys() - rebuilt.keys())
     here.expect(not missing, f"what is built from the source archive lacks {missing[:5]}")
@@ -466,7 +468,9 @@ def installed_and_run(folder: Path) -> Installation:
     here.expect(state(here.package) == rebuilt, "a run writes into the installation")
     here.put(copy / "eval")
     evaluates(here)
-    strays = [path.name for name in ("aidl_dev", "dev", "eval") for path in here.package.parent.glob(name)]
+    strays = [
+        path.name for name in ("aidl_dev", "dev", "eval", "server") for path in here.package.parent.glob(name)
+    ]
     here.expect(not strays, f"what is not the product's is installed: {strays}")
     kept = [str(path) for path in here.home.rglob("*aidl*")]
     here.expect(not kept, f"something is kept in the home: {kept[:5]}")

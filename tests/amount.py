@@ -45,9 +45,10 @@ def tries(count: int, **more: Any) -> settings:
 
 _MANY, _ONE_IN = 12, 4
 _CORPORA = (
-    *(f"tests/{room}/" for room in ("checker", "drawings", "export", "geometry", "ide")),
+    *(f"tests/{room}/" for room in ("checker", "drawings", "export", "geometry")),
     *(f"tests/property/test_{name}.py" for name in ("constraints", "paths", "shapes")),
     "tests/resolve/",
+    "server/tests/ide/",
     "tests/solver/",
     "dev/tests/",
     "eval/tests/",

@@ -22,7 +22,7 @@ MISTAKE, MENDED = "The mistake", "Mended"
 
 def codes_in_source() -> set[str]:
     """Codes written as string literals anywhere in the packages."""
-    folders = (ROOT / "aidl_lang", ROOT / "eval" / "aidl_eval")
+    folders = (ROOT / "aidl_lang", ROOT / "eval" / "aidl_eval", ROOT / "server" / "aidl_server")
     texts = (path.read_text(encoding="utf-8") for folder in folders for path in folder.rglob("*.py"))
     return {code for text in texts for code in re.findall(r"""["']([EWN]\d{4})["']""", text)}
 
@@ -37,7 +37,7 @@ def test_every_page_has_a_code() -> None:
 
 def test_every_code_is_told_by_a_test() -> None:
     """Most stand in a document of `tests/spec`, with their text."""
-    folders = (ROOT / name for name in ("tests", "eval/tests", "web/tests"))
+    folders = (ROOT / name for name in ("tests", "server/tests", "eval/tests", "web/tests"))
     files = [path for folder in folders for path in folder.rglob("*") if path.suffix in (".py", ".md")]
     told = "".join(path.read_text("utf-8") for path in files)
     assert [code for code in CODES if code not in told] == []

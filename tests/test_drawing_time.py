@@ -19,11 +19,11 @@ from aidl_lang.pipeline import Compiled
 from aidl_lang.tools.agents.calling import answer
 from aidl_lang.tools.agents.tools import Tools
 from aidl_lang.tools.cli import main
-from aidl_lang.tools.ide.actions import extractions
-from aidl_lang.tools.ide.dragging import drag, handles
-from aidl_lang.tools.ide.preview import preview
-from aidl_lang.tools.ide.references import CannotError
-from aidl_lang.tools.ide.workspace import View, look, run
+from aidl_server.ide.actions import extractions
+from aidl_server.ide.dragging import drag, handles
+from aidl_server.ide.preview import preview
+from aidl_server.ide.references import CannotError
+from aidl_server.ide.workspace import View, look, run
 
 PLATES = """\
 assembly plates {

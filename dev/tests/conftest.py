@@ -1,5 +1,5 @@
 """The browser of the tests of the preview, for the built site."""
 
-from tests.preview.conftest import browser
+from server.tests.preview.conftest import browser
 
 __all__ = ["browser"]

@@ -43,7 +43,7 @@ def test_what_is_above_its_ceiling_or_has_none_is_told() -> None:
         ("aidl_lang/parser.py", "aidl_lang"),
         ("aidl_lang/solver/stages/all.py", "aidl_lang/solver"),
         ("aidl_lang/tools/vocabulary.py", "aidl_lang/tools"),
-        ("aidl_lang/tools/ide/hover/hover.py", "aidl_lang/tools/ide"),
+        ("server/aidl_server/ide/hover/hover.py", "server/aidl_server/ide"),
         ("eval/aidl_eval/study/site.py", "eval/aidl_eval"),
     ],
 )

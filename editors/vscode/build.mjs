@@ -28,7 +28,7 @@ await build({
   sourcemap: options.has("--minify") ? false : "linked",
 });
 
-const pane = join(root, "aidl_lang", "tools", "preview", "pane");
+const pane = join(root, "server", "aidl_server", "preview", "pane");
 await rm(join(here, "media"), { recursive: true, force: true });
 await cp(pane, join(here, "media", "pane"), {
   recursive: true,

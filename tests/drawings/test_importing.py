@@ -17,10 +17,10 @@ from aidl_lang.common.world import DiskWorld, MemoryWorld
 from aidl_lang.export.job import Options
 from aidl_lang.pipeline import Compiled
 from aidl_lang.tools.discretion import Programs
-from aidl_lang.tools.ide.completion import complete
-from aidl_lang.tools.ide.hover import hover
-from aidl_lang.tools.ide.references import CannotError, definitions, renameable
-from aidl_lang.tools.ide.workspace import look
+from aidl_server.ide.completion import complete
+from aidl_server.ide.hover import hover
+from aidl_server.ide.references import CannotError, definitions, renameable
+from aidl_server.ide.workspace import look
 from tests.amount import tries
 
 LOGO = (

@@ -204,7 +204,7 @@ def _rpc(data: bytes) -> object:
 
 async def _served(data: bytes) -> None:
     """Hands the bytes of a session to a server; raises if it crashes, or answers nothing after that."""
-    from aidl_lang.tools.lsp import serve
+    from aidl_server.lsp import serve
 
     server, answers, crashes = serve.make(), list[Any](), list[BaseException]()
     server.crashed = crashes.append  # type: ignore[method-assign]

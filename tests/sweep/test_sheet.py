@@ -13,7 +13,7 @@ from playwright.sync_api import Page, sync_playwright
 
 from aidl_lang.common.diagnostics import AidlError
 from aidl_lang.tools.sweeping.sheet import fitted, in_one, on_paper
-from tests.preview.conftest import ARGUMENTS, CHROMIUM
+from server.tests.preview.conftest import ARGUMENTS, CHROMIUM
 from tests.sweep.here import PLATE, sweep
 
 SIGN = PLATE.replace("param bored = true", 'param name = "Ada"').replace("if bored {", "if true {")

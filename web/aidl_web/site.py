@@ -21,7 +21,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 WEB = ROOT / "web"
-PANE = ROOT / "aidl_lang" / "tools" / "preview" / "pane"
+PANE = ROOT / "server" / "aidl_server" / "preview" / "pane"
 
 PYODIDE = "0.27.7"
 CDN = f"https://cdn.jsdelivr.net/pyodide/v{PYODIDE}/full/"
@@ -43,7 +43,7 @@ _PURE = {
 """The packages that are taken as this environment has them."""
 _LEFT_OUT = re.compile(
     r"(^|/)(tests|distutils|_pyinstaller|include|__pycache__)/|\.(pyi|c|h|typed|pxd|a|js|html)$"
-    r"|^aidl_lang/tools/preview/pane/|^reportlab/(fonts|graphics)/|^ezdxf/addons/(dxf2code|drawing|browser|odafc)"
+    r"|^aidl_server/preview/pane/|^reportlab/(fonts|graphics)/|^ezdxf/addons/(dxf2code|drawing|browser|odafc)"
 )
 """What nobody asks for in a browser."""
 BARE = ("lsprotocol", "pygls", "ezdxf", "fontTools")
@@ -164,13 +164,14 @@ def _installed(name: str) -> Iterator[tuple[str, Path]]:
             yield inner, Path(str(file.locate()))
 
 
-def _own_wheel(work: Path) -> Path:
-    """Returns the wheel of the product, built now."""
+def _own_wheels(work: Path) -> list[Path]:
+    """Returns the wheels of the product and of its server, built now."""
     folder = work / "own"
     shutil.rmtree(folder, ignore_errors=True)
     command = [sys.executable, "-m", "hatchling", "build", "-t", "wheel", "-d", str(folder)]
-    subprocess.run(command, check=True, cwd=ROOT, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-    return next(folder.glob("*.whl"))
+    for project in (ROOT, ROOT / "server"):
+        subprocess.run(command, check=True, cwd=project, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    return sorted(folder.glob("*.whl"))
 
 
 # --- The packs
@@ -187,7 +188,7 @@ def _tree(core: Path, work: Path) -> tuple[Path, dict[str, str]]:
                 owners[re.split(r"[/.]", inner)[0]] = pack
                 _put(tree / inner, file.read_bytes())
     wheels = [(_archive(core, name), pack) for name, pack in _BINARY.items()]
-    for wheel, pack in [*wheels, (_own_wheel(work), "later")]:
+    for wheel, pack in [*wheels, *((own, "later") for own in _own_wheels(work))]:
         with zipfile.ZipFile(wheel) as archive:
             for inner in archive.namelist():
                 if not (inner.endswith("/") or _LEFT_OUT.search(inner)):
@@ -220,7 +221,8 @@ def _write_packs(into: Path, tree: Path, owners: Mapping[str, str], first: set[s
         top = name.partition("/")[0].partition(".")[0]
         if ".dist-info/" in name or (name.startswith("aidl_lang/_data/examples/") and name.endswith(".aidl")):
             continue
-        is_first = name in first or (name.startswith("aidl_lang/") and not name.endswith(".pyc"))
+        is_own = name.startswith(("aidl_lang/", "aidl_server/"))
+        is_first = name in first or (is_own and not name.endswith(".pyc"))
         packs["first" if is_first else owners.get(top, "later")].append(name)
     for pack, names in packs.items():
         (into / f"{pack}.pack").write_bytes(gzip.compress(_packed(tree, names), 9, mtime=0))

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from aidl_web.site import ROOT, WEB, built
-from tests.preview.conftest import browser
+from server.tests.preview.conftest import browser
 from web.tests.places import MISSING, PYODIDE, Run
 
 __all__ = ["browser"]

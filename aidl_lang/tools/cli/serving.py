@@ -7,20 +7,18 @@ import os
 import re
 import secrets
 import socket
+from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from aidl_lang.common.prose import ticked
 from aidl_lang.tools.cli import files
 from aidl_lang.tools.cli.files import UseError, say
 from aidl_lang.tools.cli.options import add_program, flag, value
 
-if TYPE_CHECKING:
-    from aidl_lang.tools.preview.host import Host
-
-
 LOCALHOST = "127.0.0.1"
+_SERVER = "aidl_server"
+"""A distribution of its own, which stands on this one; so it is known by its name alone."""
 
 
 def port(text: str) -> int:
@@ -93,44 +91,11 @@ def register_preview(parser: argparse.ArgumentParser) -> None:
 
 
 def run_preview(arguments: argparse.Namespace) -> int:
-    require("the preview", "pygls", "starlette", "uvicorn", "websockets")
+    require("the preview", _SERVER)
     files.require_watchable(arguments.file)
-    hint = "without `--port` a free one is taken"
-    listener = listen(arguments.host, arguments.port, "E0953", hint)
-
-    from aidl_lang.tools.preview.host import Host
-    from aidl_lang.tools.preview.local import Door
-    from aidl_lang.tools.preview.site import serve
-
-    host, door = Host(Path(arguments.file).resolve(), _write), Door(listener)
-    say(f"{arguments.file}: {door.url} (stop with Ctrl-C)")
-    if not arguments.no_open:
-        open_browser(door.url)
-    try:
-        serve(host, door)
-    finally:
-        _rescue(host)
+    listener = listen(arguments.host, arguments.port, "E0953", "without `--port` a free one is taken")
+    import_module(f"{_SERVER}.command").preview(arguments, listener)
     return 0
-
-
-def _rescue(host: Host) -> None:
-    """Keeps what was typed and not saved, and tells where."""
-    from aidl_lang.tools.ide.references import CannotError
-
-    try:
-        kept = host.text.rescue()
-    except CannotError as reason:
-        say(f"what was typed in the preview is not saved: {reason}")
-        return
-    if kept is not None:
-        say(f"what was typed in the preview and not saved is in {kept}")
-
-
-def _write(path: Path, data: bytes) -> None:
-    try:
-        files.rewrite(str(path), data)
-    except UseError as reason:
-        raise OSError(reason.diagnostic.message) from None
 
 
 _CODE = "E0954"
@@ -144,19 +109,17 @@ def register_lsp(parser: argparse.ArgumentParser) -> None:
 
 def run_lsp(arguments: argparse.Namespace) -> int:
     """Returns the exit code of the protocol: 0 if the client has shut the server down before its exit."""
-    require("the server", "pygls", code=_CODE)
+    require("the server", _SERVER, code=_CODE)
     listener = None
     if arguments.tcp is not None:
         host, port = arguments.tcp
         listener = listen(host, port, _CODE, "port 0 takes one that is free")
-
-    from aidl_lang.tools.lsp.serve import serve_socket, serve_standard_streams
-
+    server = import_module(f"{_SERVER}.lsp.serve")
     if listener is None:
-        return serve_standard_streams()
+        return int(server.serve_standard_streams())
     host, port = listener.getsockname()[:2]
     say(f"{host}:{port}: waiting for a client")
-    return serve_socket(listener)
+    return int(server.serve_socket(listener))
 
 
 def _address(text: str) -> tuple[str, int]:

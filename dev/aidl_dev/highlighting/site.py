@@ -26,7 +26,7 @@ def texts(root: Path) -> dict[str, str]:
         "editors/vscode/syntaxes/markdown-aidl.tmLanguage.json": _json(markdown()),
         "editors/vscode/snippets/aidl.json": _json(_snippets()),
         "editors/codemirror/src/words.ts": words(),
-        "aidl_lang/tools/preview/pane/words.js": words(typed=False),
+        "server/aidl_server/preview/pane/words.js": words(typed=False),
         **queries(),
         **formats.texts(),
         SAMPLES: _samples(root),

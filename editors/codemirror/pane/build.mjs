@@ -1,4 +1,4 @@
-// Bundles the editor of the preview's pane: aidl_lang/tools/preview/pane/editor.js, which ships as it is, so that nobody
+// Bundles the editor of the preview's pane: server/aidl_server/preview/pane/editor.js, which ships as it is, so that nobody
 // needs Node to see a program, and the licences of what is in it. `--check` writes nothing, and fails if they are others.
 //
 // The words of the language stay outside: the pane has them in a file of its own (words.js), which `make colours` writes.
@@ -11,7 +11,7 @@ import { build } from "esbuild";
 
 const here = dirname(fileURLToPath(import.meta.url));
 const project = dirname(here);
-const pane = join(project, "..", "..", "aidl_lang", "tools", "preview", "pane");
+const pane = join(project, "..", "..", "server", "aidl_server", "preview", "pane");
 /** What the bundle is made of, below editors/codemirror: tests/preview/test_bundle.py has the same list. */
 const SOURCES = [
   "package-lock.json", "pane/build.mjs", "pane/editor.ts", "src/aidl.grammar", "src/complete.ts", "src/highlight.ts",

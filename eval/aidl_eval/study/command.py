@@ -55,9 +55,9 @@ def _export(store: Store, name: str) -> int:
 
 def _serve(store: Store, arguments: argparse.Namespace) -> int:
     """Runs until interrupted."""
-    serving.require("the study", "starlette", "uvicorn")
+    serving.require("the study", "aidl_server")
     from aidl_eval.study import session, site
-    from aidl_lang.tools.preview.local import Door
+    from aidl_server.preview.local import Door
 
     served = session.opened(store, arguments.pictures)
     hint = "without `--port` a free one is taken"

@@ -18,7 +18,7 @@ from starlette.types import ASGIApp
 from aidl_eval.judgements import rater_named
 from aidl_eval.store import StoreError
 from aidl_eval.study.session import Groups, RefusedError, Session
-from aidl_lang.tools.preview.local import HEADERS, KINDS, PANE, STRICT, Guard, file_named
+from aidl_server.preview.local import HEADERS, KINDS, PANE, STRICT, Guard, file_named
 
 PAGE = Path(__file__).parent / "page"
 CONNECTIONS = 64

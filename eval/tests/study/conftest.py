@@ -1,1 +1,1 @@
-from tests.preview.conftest import browser as browser
+from server.tests.preview.conftest import browser as browser

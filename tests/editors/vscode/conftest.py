@@ -34,8 +34,8 @@ def started(vsix: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Wi
     if not FOLDER:
         pytest.skip("AIDL_CODE_SERVER does not name a folder with VS Code (`make test-vscode` makes one)")
     sync_api = pytest.importorskip("playwright.sync_api")
+    from server.tests.preview.conftest import ARGUMENTS, CHROMIUM
     from tests.editors.vscode.window import PATIENCE, Window, served
-    from tests.preview.conftest import ARGUMENTS, CHROMIUM
 
     with (
         served(Installed(Path(FOLDER)), vsix, tmp_path_factory.mktemp("code")) as (address, folder),

@@ -12,7 +12,7 @@ from aidl_lang.version import __version__
 from tests.documents import ROOT
 
 EXTENSION = ROOT / "editors" / "vscode"
-PANE = ROOT / "aidl_lang" / "tools" / "preview" / "pane"
+PANE = ROOT / "server" / "aidl_server" / "preview" / "pane"
 
 
 def test_the_version_is_that_of_aidl():

@@ -15,8 +15,8 @@ from typing import Protocol, TypeVar
 from lsprotocol.types import LSPErrorCodes
 
 from aidl_lang.common.resources import resource
-from aidl_lang.tools.lsp.serve import make_room
-from aidl_lang.tools.preview.host import OWN, Host, Json, Page, Request
+from aidl_server.lsp.serve import make_room
+from aidl_server.preview.host import OWN, Host, Json, Page, Request
 
 FOLDER = Path("/programs")
 """Where programs lie, and what they import."""

@@ -1,6 +1,6 @@
 /** What is said between the pane, this extension and the language server: the pane owns the types. */
 
-import type { Status } from "../../../../aidl_lang/tools/preview/pane/protocol";
+import type { Status } from "../../../../server/aidl_server/preview/pane/protocol";
 
 export type {
   Applied,
@@ -21,7 +21,7 @@ export type {
   Status,
   Tells,
   Told,
-} from "../../../../aidl_lang/tools/preview/pane/protocol";
+} from "../../../../server/aidl_server/preview/pane/protocol";
 
 /** After every run of an open document, whether it is previewed or not. */
 export interface RunStatus {

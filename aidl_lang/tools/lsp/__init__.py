@@ -1,1 +1,0 @@
-"""The language server: the answers of `aidl_lang.tools.ide` over its protocol, registered theme by theme."""

@@ -1,0 +1,86 @@
+"""Completion, hover and signature help answer at any place of any text, whatever it says."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+
+from aidl_server.ide.completion import complete
+from aidl_server.ide.hover import hover
+from aidl_server.ide.signatures import signature_help
+from aidl_server.ide.workspace import View, Workspace, look, run
+from server.tests.ide.conftest import seen
+from tests.compiled import FEW
+from tests.fuzz.sources import mutant
+
+
+def _ask(view: View, offset: int, files: Callable[[], list[Path]]) -> None:
+    text = view.source.text
+    found = complete(view, offset, files)
+    for completion in found:
+        assert 0 <= completion.span.start <= completion.span.end <= len(text)
+    assert all(isinstance(c.documentation, str) for c in found[:2])
+    said = hover(view, offset)
+    assert said is None or said.text
+    shown = signature_help(view, offset)
+    if shown is not None:
+        overload = shown.overloads[shown.active]
+        assert overload.active is None or overload.active < len(overload.parameters)
+
+
+@pytest.mark.parametrize("path", FEW)
+def test_every_place_is_answered(path: Path) -> None:
+    chance = random.Random(f"all of {path.stem}")
+    text = path.read_text("utf-8")
+    workspace = Workspace([path.parent])
+    world = workspace.world(path)
+
+    def texts() -> Iterator[tuple[str, int]]:
+        yield text, 12
+        for _ in range(5):
+            yield mutant(chance, [text]), 3
+        yield "\ufeff" + text.replace("\n", "\r\n"), 3
+
+    for number, (changed, places) in enumerate(texts()):
+        view = look(path, changed, world)
+        if number in (0, 3):
+            view = run(view)
+        for _ in range(places):
+            _ask(view, chance.randrange(-1, len(changed) + 2), workspace.programs)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "",
+        "\ufeff",
+        ".",
+        "@",
+        "a.",
+        "solid",
+        "solid a {",
+        "solid a { r = circle(center: (0, ",
+        "solid a { constrain { for i in ",
+        "constrain a.",
+        'import "',
+        "import x from ",
+        "fn f(x: ",
+        "let a = a\nlet b = a.",
+        "solid a { b = b.c.",
+        "fn f(x) = f(x)\nsolid a { r = circle(radius: f(3)) }",
+        "(" * 60,
+        "solid a { r = " + "[" * 40,
+        "let a = " + "-" * 40 + "1",
+        "\U0001d51b\U0001d51c = \U0001d51b.",
+        "\r\n\t\r\n",
+    ],
+)
+def test_every_place_of_odd_texts_is_answered(text: str) -> None:
+    view = seen(text, solved=True)
+    step = max(1, len(text) // 12)
+    for offset in range(0, len(text) + 1, step):
+        _ask(view, offset, list)
+    _ask(view, len(text), list)

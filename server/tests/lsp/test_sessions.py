@@ -1,0 +1,192 @@
+"""How a session begins and ends, over pipes and over a socket; clients that break the rules."""
+
+from __future__ import annotations
+
+import json
+import socket
+import subprocess
+import sys
+import threading
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+
+from aidl_lang.tools.cli import main
+from aidl_lang.tools.cli.serving import find_spec
+from server.tests.lsp.editor import COMMAND, ENVIRONMENT
+from server.tests.lsp.test_in_flight import SLOW
+
+SECONDS = 60
+
+
+class Wire:
+    """A client that says what it is told to, byte for byte."""
+
+    def __init__(self, incoming: Any, outgoing: Any) -> None:
+        self.incoming, self.outgoing = incoming, outgoing
+
+    def send(self, **message: Any) -> None:
+        self.write(json.dumps({"jsonrpc": "2.0", **message}).encode())
+
+    def write(self, body: bytes) -> None:
+        self.raw(b"Content-Length: %d\r\n\r\n" % len(body) + body)
+
+    def raw(self, data: bytes) -> None:
+        self.outgoing.write(data)
+        self.outgoing.flush()
+
+    def read(self) -> dict[str, Any]:
+        length = 0
+        while line := self.incoming.readline().strip():
+            name, _, value = line.partition(b":")
+            length = int(value) if name.lower() == b"content-length" else length
+        return json.loads(self.incoming.read(length))
+
+    def answer(self, number: object) -> dict[str, Any]:
+        while (message := self.read()).get("id") != number or "method" in message:
+            pass
+        return message
+
+    def greet(self, **capabilities: Any) -> None:
+        params = {"processId": None, "rootUri": None, "capabilities": capabilities}
+        self.send(id=0, method="initialize", params=params)
+        assert "result" in self.answer(0)
+        self.send(method="initialized", params={})
+
+    def open(self, text: str, uri: str = "untitled:a") -> None:
+        document = {"uri": uri, "languageId": "aidl", "version": 1, "text": text}
+        self.send(method="textDocument/didOpen", params={"textDocument": document})
+
+    def diagnostics(self) -> list[dict[str, Any]]:
+        """What is told next."""
+        while (told := self.read()).get("method") != "textDocument/publishDiagnostics":
+            pass
+        return told["params"]["diagnostics"]
+
+
+@pytest.fixture
+def server() -> Iterator[subprocess.Popen[bytes]]:
+    process = subprocess.Popen(
+        COMMAND, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, env=ENVIRONMENT
+    )
+    watchdog = threading.Timer(SECONDS, process.kill)  # ends what waits for an answer that does not come
+    watchdog.start()
+    with process:
+        yield process
+        process.kill()
+    watchdog.cancel()
+
+
+def test_rules_are_kept_where_clients_break_them(server: subprocess.Popen[bytes]) -> None:
+    wire = Wire(server.stdout, server.stdin)
+    wire.send(id=1, method="textDocument/hover", params={})
+    assert wire.answer(1)["error"]["code"] == -32002
+    wire.greet()
+    wire.send(
+        id="again", method="initialize", params={"processId": None, "rootUri": None, "capabilities": {}}
+    )
+    assert wire.answer("again")["error"]["code"] == -32600
+    wire.raw(b"garbage\r\n\r\n\x00\xff\n" + b"x" * 200_000 + b"\n")
+    wire.raw(b"content-length:abc\r\n\r\n")
+    for body in (b"no json", b"\xff\xfe", b"[" * 100_000, b'"text"', b"{}", b'{"jsonrpc": "1.0", "id": 4}'):
+        wire.write(body)
+        assert wire.answer(None)["error"]["code"] in (-32700, -32600)
+    wire.send(id=5, method="textDocument/definition", params={"textDocument": 3})
+    assert wire.answer(5)["error"]["code"] == -32602
+    wire.send(id=6, method="textDocument/definition", params={"position": {"line": -1, "character": 1e99}})
+    assert "error" in wire.answer(6)
+    wire.send(id=7, method="no/such/method", params=None)
+    assert wire.answer(7)["error"]["code"] == -32601
+    wire.send(id=[8], method="textDocument/hover")
+    wire.send(method="textDocument/didChange", params={"textDocument": {}})
+    wire.send(method="$/cancelRequest", params={"id": "never"})
+    wire.send(id=99, result={"surprise": True})
+    wire.open("solid a { b = circle(raduis: 3) }", "http://[not a uri")
+    assert [d["code"] for d in wire.diagnostics()] == ["E0324"]
+    wire.send(id=10, method="shutdown")
+    assert wire.answer(10)["result"] is None
+    wire.send(id=11, method="shutdown")
+    assert wire.answer(11)["error"]["code"] == -32600
+    wire.send(method="exit")
+    assert server.wait(SECONDS) == 0
+    assert b"Traceback" not in server.stderr.read()
+
+
+def test_shutting_down_does_not_wait_for_a_solve(server: subprocess.Popen[bytes]) -> None:
+    wire = Wire(server.stdout, server.stdin)
+    wire.greet()
+    wire.open(SLOW)
+    wire.diagnostics()  # of what was found without running it: by now it is being run
+    wire.send(id=1, method="aidl/preview", params={"uri": "untitled:a", "show": []})
+    wire.send(id=2, method="shutdown")
+    assert "result" in wire.answer(2)
+    wire.send(method="exit")
+    assert server.wait(SECONDS) == 0
+    assert b"Traceback" not in server.stderr.read()
+
+
+def test_leaving_without_a_word(server: subprocess.Popen[bytes]) -> None:
+    wire = Wire(server.stdout, server.stdin)
+    wire.greet()
+    wire.open(SLOW)
+    server.stdin.close()
+    assert server.wait(SECONDS) == 1
+    assert b"Traceback" not in server.stderr.read()
+
+
+def test_a_client_on_a_socket_that_counts_in_bytes() -> None:
+    process = subprocess.Popen([*COMMAND, "--tcp", "127.0.0.1:0"], stderr=subprocess.PIPE, env=ENVIRONMENT)
+    with process:
+        address, _, words = process.stderr.readline().decode().partition(": ")
+        assert words == "waiting for a client\n"
+        host, port = address.rsplit(":", 1)
+        with socket.create_connection((host, int(port)), SECONDS) as connection:
+            stream = connection.makefile("rwb")
+            wire = Wire(stream, stream)
+            wire.greet(general={"positionEncodings": ["utf-8"]})
+            text = "solid a { /* 🚀ü */ b = circle(raduis: 3) }"
+            wire.open(text)
+            (wrong,) = wire.diagnostics()
+            character = len(text[: text.index("raduis")].encode())
+            assert wrong["range"]["start"] == {"line": 0, "character": character}
+            wire.send(method="exit")  # without a `shutdown`
+            assert process.wait(SECONDS) == 1
+
+
+def test_an_address_that_cannot_be_served(capsys: pytest.CaptureFixture[str]) -> None:
+    with socket.socket() as taken:
+        taken.bind(("127.0.0.1", 0))
+        taken.listen()
+        assert main(["lsp", "--tcp", f"127.0.0.1:{taken.getsockname()[1]}"]) == 2
+    assert "E0954" in capsys.readouterr().err
+    for wrong in ("8000", "here:", "here:99999"):
+        with pytest.raises(SystemExit):
+            main(["lsp", "--tcp", wrong])
+
+
+def test_without_its_packages_it_says_what_to_install(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(
+        "aidl_lang.tools.cli.serving.find_spec",
+        lambda name: None if name == "aidl_server" else find_spec(name),
+    )
+    assert main(["lsp"]) == 2
+    said = capsys.readouterr().err
+    assert "E0954" in said
+    assert "aidl-lang[editor]" in said
+
+
+def test_nothing_but_the_protocol_is_on_standard_output() -> None:
+    script = (
+        "import sys, os, asyncio\n"
+        "from aidl_server.lsp import serve as wire\n"
+        "incoming, outgoing = wire.claim_standard_streams()\n"
+        "print('stray'); sys.stdout.flush(); os.write(1, b'stray')\n"
+        "os.write(outgoing, os.read(incoming, 99)); assert sys.stdin.read() == ''\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", script], input=b"said", capture_output=True, env=ENVIRONMENT, check=True
+    )
+    assert (done.stdout, done.stderr.count(b"stray")) == (b"said", 2)

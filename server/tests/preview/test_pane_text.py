@@ -1,0 +1,209 @@
+"""The text in the pane, in Chromium: typed, told, saved, undone, and put together with what others write."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+from playwright.sync_api import expect
+
+from server.tests.preview.conftest import Pane
+from server.tests.preview.messages import TEXT, URI, picture, place, problem, words
+
+LINES = TEXT.split("\n")
+
+
+def type_at_end(pane: Pane, line: int, text: str) -> None:
+    pane.find(".cm-line").nth(line).click()
+    pane.page.keyboard.press("End")
+    pane.page.keyboard.type(text)
+
+
+def typed(pane: Pane, count: int = 1) -> dict[str, Any]:
+    return pane.host.hears("aidl/type", count)
+
+
+def insertion(line: int, character: int, text: str) -> dict[str, Any]:
+    at = {"line": line, "character": character}
+    return {"start": at, "end": at, "text": text}
+
+
+def test_what_is_typed_is_told_and_not_saved(pane: Pane) -> None:
+    save = pane.page.get_by_role("button", name="Unsaved")
+    expect(save).to_be_hidden()
+    type_at_end(pane, 1, " // x")
+    expect(save).to_be_visible()
+    change = insertion(1, len(LINES[1]), " // x")
+    assert typed(pane) == {"uri": URI, "version": 1, "changes": [change]}
+    pane.host.answer("aidl/type", {"applied": True, "version": 2})
+    pane.host.tell("aidl/text", words(None, version=2, saved=False, undo="Typing"))
+    type_at_end(pane, 0, "y")
+    assert typed(pane, 2) == {"uri": URI, "version": 2, "changes": [insertion(0, len(LINES[0]), "y")]}
+    pane.host.answer("aidl/type", {"applied": True, "version": 3})
+    pane.page.keyboard.press("Control+s")
+    assert pane.host.hears("aidl/save") == {"uri": URI, "anyway": False}
+    pane.host.tell("aidl/text", words(None, version=3, undo="Typing"))
+    expect(save).to_be_hidden()
+
+
+def test_what_is_typed_and_not_told_yet_goes_before_what_is_set(pane: Pane) -> None:
+    type_at_end(pane, 0, "z")
+    pane.page.keyboard.press("Control+z")
+    typed(pane)
+    assert pane.host.of("aidl/undo") == []
+    pane.host.answer("aidl/type", {"applied": True, "version": 2})
+    pane.host.hears("aidl/undo")
+    asked = [m["method"] for m in pane.host.heard]
+    assert asked.index("aidl/type") < asked.index("aidl/undo")
+
+
+def test_what_others_write_is_put_together_with_what_is_typed(pane: Pane) -> None:
+    type_at_end(pane, 1, " // mine")
+    typed(pane)
+    theirs = "// theirs\n" + TEXT
+    pane.host.tell("aidl/text", words(theirs, version=7))
+    pane.host.answer("aidl/type", {"applied": False, "reason": "the text has changed meanwhile"})
+    again = typed(pane, 2)
+    assert again == {"uri": URI, "version": 7, "changes": [insertion(2, len(LINES[1]), " // mine")]}
+    expect(pane.find(".cm-line").first).to_have_text("// theirs")
+    expect(pane.find(".cm-line").nth(2)).to_have_text(f"{LINES[1]} // mine")
+    expect(pane.find(".toast")).to_have_count(0)
+
+
+def test_what_cannot_be_taken_is_told(pane: Pane) -> None:
+    type_at_end(pane, 0, "q")
+    typed(pane)
+    pane.host.answer("aidl/type", {"applied": False, "reason": "there is no room"})
+    expect(pane.find(".toast")).to_contain_text("there is no room")
+    expect(pane.page.get_by_role("button", name="Unsaved")).to_be_visible()
+
+
+def test_another_host_gets_what_the_first_did_not_save(pane: Pane) -> None:
+    type_at_end(pane, 0, "w")
+    typed(pane)
+    pane.host.answer("aidl/type", {"applied": True, "version": 2})
+    pane.host.tell("aidl/text", words(None, version=2, saved=False))
+    pane.host.drop()
+    pane.host.hears("aidl/preview", 2)
+    pane.host.tell("aidl/text", words())
+    assert typed(pane, 2) == {"uri": URI, "version": 1, "changes": [insertion(0, len(LINES[0]), "w")]}
+
+
+def test_undo_and_redo_by_buttons_and_keys(pane: Pane) -> None:
+    undo, redo = (pane.page.get_by_role("button", name=name) for name in ("Undo", "Redo"))
+    expect(undo).to_be_disabled()
+    pane.host.tell("aidl/text", words(None, undo="Set width", redo="Drag"))
+    expect(undo).to_have_attribute("title", "Undo: Set width (Ctrl+Z)")
+    expect(redo).to_have_attribute("title", "Redo: Drag (Ctrl+Y)")
+    undo.click()
+    redo.click()
+    pane.host.hears("aidl/redo")
+    pane.find("#stage").focus()
+    for key in ("Control+z", "Control+Shift+z", "Control+y"):
+        pane.page.keyboard.press(key)
+    pane.host.hears("aidl/redo", 3)
+    pane.host.hears("aidl/undo", 2)
+    slider = pane.find("#knobs-list input[type=range]").first
+    slider.focus()
+    pane.page.keyboard.press("Control+z")
+    pane.host.hears("aidl/undo", 3)
+    pane.find(".cm-content").focus()
+    pane.page.keyboard.press("Control+z")
+    pane.host.hears("aidl/undo", 4)
+    pane.host.refusal = "the file was changed elsewhere"
+    undo.click()
+    expect(pane.find(".toast")).to_contain_text("the file was changed elsewhere")
+
+
+def test_a_file_that_others_changed_is_told_and_chosen(pane: Pane) -> None:
+    contested = pane.find("#contested")
+    expect(contested).to_be_hidden()
+    pane.host.tell("aidl/text", words(None, saved=False, contested=True))
+    expect(contested).to_be_visible()
+    pane.page.get_by_role("button", name="Save mine over it").click()
+    assert pane.host.hears("aidl/save") == {"uri": URI, "anyway": True}
+    pane.page.get_by_role("button", name="Take the file").click()
+    pane.host.hears("aidl/takeFile")
+
+
+def of_one_version(pane: Pane, **changes: Any) -> int:
+    """A text and its picture; returns their version."""
+    version: int = picture()["version"]
+    pane.host.tell("aidl/text", words(version=version))
+    pane.shows(version=version, **changes)
+    return version
+
+
+def test_what_is_wrong_is_underlined(pane: Pane) -> None:
+    version = of_one_version(pane, problems=[problem(range=place(1, 4, 9), message="no `such` thing")])
+    wrong = pane.find(".cm-lintRange-error")
+    expect(wrong).to_have_text(LINES[1][4:9])
+    wrong.hover()
+    expect(pane.find(".cm-diagnostic")).to_contain_text("no `such` thing")
+    pane.shows(version=version + 1000, problems=[])  # of a text that is not here yet
+    expect(wrong).to_have_count(1)
+    pane.host.tell("aidl/text", words(version=version + 1001))
+    pane.shows(version=version + 1001, problems=[])
+    expect(wrong).to_have_count(0)
+
+
+def test_a_problem_leads_to_its_place_in_the_text(pane: Pane) -> None:
+    of_one_version(pane, problems=[problem(range=place(3, 8, 15))])
+    pane.find("#problems-list").get_by_role("button", name="line 4").click()
+    expect(pane.find(".cm-content")).to_be_focused()
+    pane.page.keyboard.type("W")
+    assert typed(pane)["changes"][0]["start"] == {"line": 3, "character": 8}
+
+
+def test_keys_of_the_pane_are_letters_in_the_text(pane: Pane) -> None:
+    before = pane.at(0, 0), pane.scale
+    type_at_end(pane, 0, "ft+0")
+    assert typed(pane)["changes"][0]["text"].startswith("ft+0"[:1])
+    assert (pane.at(0, 0), pane.scale) == before
+    expect(pane.find("#source")).to_be_visible()
+    for _ in range(2):  # a list of completions may be open
+        pane.page.keyboard.press("Escape")
+    expect(pane.find(".cm-content")).not_to_be_focused()
+
+
+@pytest.mark.parametrize("line", ["    param depth = 20", "    param depth = 20m", "    r = rect"])
+def test_enter_is_a_new_line_whatever_is_offered(pane: Pane, line: str) -> None:
+    type_at_end(pane, 1, f"\n{line.strip()}")
+    pane.page.wait_for_timeout(500)  # for a list to open, where one does
+    is_offered = pane.find(".cm-tooltip-autocomplete").is_visible()
+    assert is_offered == (not line.endswith("0"))
+    pane.page.keyboard.press("Enter")
+    pane.page.keyboard.type("x")
+    expect(pane.find(".cm-line").nth(2)).to_have_text(line)
+    expect(pane.find(".cm-line").nth(3)).to_have_text("    x")
+
+
+def test_enter_takes_what_was_moved_to(pane: Pane) -> None:
+    type_at_end(pane, 1, "\nr = rectang")
+    expect(pane.find(".cm-tooltip-autocomplete")).to_be_visible()
+    pane.page.wait_for_timeout(200)  # a list that has just opened takes no keys
+    pane.page.keyboard.press("ArrowDown")
+    pane.page.keyboard.press("Enter")
+    expect(pane.find(".cm-line").nth(2)).to_contain_text("rectangle(")
+
+
+def test_a_page_with_unsaved_text_asks_before_it_is_left(open_pane: Any) -> None:
+    pane = open_pane()
+    pane.host.hears("aidl/preview")
+    pane.writes()
+    asked: list[str] = []
+    pane.page.on("dialog", lambda dialog: (asked.append(dialog.type), dialog.accept()))
+    type_at_end(pane, 0, "u")
+    typed(pane)
+    with pane.page.expect_event("close"):
+        pane.page.close(run_before_unload=True)
+    assert asked == ["beforeunload"]
+
+
+def test_there_is_no_text_where_the_host_tells_none(open_pane: Any) -> None:
+    pane = open_pane()
+    pane.host.hears("aidl/preview")
+    pane.shows()
+    for part in ("source", "source-toggle", "history"):
+        expect(pane.find(f"#{part}")).to_be_hidden()
+    assert not any(path.endswith("editor.js") for path in pane.host.requests)
