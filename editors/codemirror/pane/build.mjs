@@ -12,7 +12,7 @@ import { build } from "esbuild";
 const here = dirname(fileURLToPath(import.meta.url));
 const project = dirname(here);
 const pane = join(project, "..", "..", "server", "aidl_server", "preview", "pane");
-/** What the bundle is made of, below editors/codemirror: tests/preview/test_bundle.py has the same list. */
+/** What the bundle is made of, below editors/codemirror: server/tests/preview/test_bundle.py has the same list. */
 const SOURCES = [
   "package-lock.json", "pane/build.mjs", "pane/editor.ts", "src/aidl.grammar", "src/complete.ts", "src/highlight.ts",
   "src/index.ts", "src/tokens.ts",
