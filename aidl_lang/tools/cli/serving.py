@@ -11,7 +11,6 @@ from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
 
-from aidl_lang.common.prose import ticked
 from aidl_lang.tools.cli import files
 from aidl_lang.tools.cli.files import UseError, say
 from aidl_lang.tools.cli.options import add_program, flag, value
@@ -52,11 +51,10 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     flag(parser, "--no-open", "do not open the browser")
 
 
-def require(what: str, *packages: str, code: str = "E0952", extra: str = "editor") -> None:
+def require(what: str, package: str, code: str = "E0952", extra: str = "editor") -> None:
     """Raises UseError if what serves is not installed."""
-    missing = [name for name in packages if find_spec(name) is None]
-    if missing:
-        message = f"{what} needs {', '.join(ticked(missing))}, not installed here"
+    if find_spec(package) is None:
+        message = f"{what} needs `{package}`, not installed here"
         raise UseError(code, message, f"pip install 'aidl-lang[{extra}]'")
 
 
