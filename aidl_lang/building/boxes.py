@@ -20,12 +20,10 @@ from aidl_lang.checking.types import BoxType
 from aidl_lang.common.records import record
 
 SIDES = ("left", "right", "top", "bottom")
+CORNERS = ("top_left", "top_right", "bottom_left", "bottom_right")
+MIDDLES = ("top_center", "bottom_center", "left_center", "right_center")
 
-FIELDS = (
-    *(*SIDES, "width", "height", "center", "center_x", "center_y"),
-    *("top_left", "top_right", "bottom_left", "bottom_right"),
-    *("top_center", "bottom_center", "left_center", "right_center"),
-)
+FIELDS = (*SIDES, "width", "height", "center", "center_x", "center_y", *CORNERS, *MIDDLES)
 
 Source = Geometry | Structure | PointVal
 

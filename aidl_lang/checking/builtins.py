@@ -281,10 +281,10 @@ MATH = ("math", "np", "numpy")
 """Modules of other languages whose functions are known here by the same names: `math.sqrt(2)`, `np.pi`."""
 
 ATTRIBUTES = (
-    *("orientation", "elevation", "color", "colour", "layer", "thickness", "depth", "material", "quantity"),
-    *("detached", "rigid", "note", "stroke", "dash", "opacity", "shade", "shadow", "edges", "halo"),
-    *("behind", "in_front", "clip"),
-    *("title", "author", "number", "revision", "thread", "tolerance", "finish", ast.ALLOW),
+    *"orientation elevation color colour layer thickness depth material quantity detached rigid note".split(),
+    *"stroke dash opacity shade shadow edges halo behind in_front clip".split(),
+    *"title author number revision thread tolerance finish".split(),
+    ast.ALLOW,
 )
 """Names that may stand behind `@` before a definition; `colour` is another spelling of `color`."""
 

@@ -189,19 +189,13 @@ positive | negative
 """Words that mean the reverse of those on the other side of the bar, or its counterpart."""
 _TURNING = ("no", "not", "non", "never", "without", "by")
 """Words that reverse the meaning of the rest."""
-_REVERSING = (
-    *("un", "de", "dis", "mis", "anti", "counter", "off", "none"),
-    *("opposite", "reverse", "reversed", "inverse", "inverted"),
-)
+_REVERSING = tuple("un de dis mis anti counter off none opposite reverse reversed inverse inverted".split())
 """Words that make another thing of a name, wherever they stand in it."""
 _PART_OF_A_NAME = 4
 """Letters that a word must have to be recognised inside a longer one: `alignleft`."""
 
 
-_DENYING = (
-    *("a", "an", "anti", "counter", "de", "des", "dis", "ex", "il", "im", "in", "ir", "mis", "no", "non"),
-    *("not", "off", "out", "un"),
-)
+_DENYING = tuple("a an anti counter de des dis ex il im in ir mis no non not off out un".split())
 """Syllables that reverse a word when they stand before it."""
 _DENYING_ALL = tuple(x for x in _DENYING if x not in ("a", "an", "in"))
 """Those of them with which few words begin by chance."""

@@ -243,10 +243,7 @@ _ROWS = 42
 _MARGIN, _TITLE = 10.0, 8.0
 """Around the table on a page, and above it, mm."""
 
-_PARTS = (
-    *("number", "part", "quantity", "material", "thickness_mm"),
-    *("width_mm", "height_mm", "area_mm2", "cut_mm"),
-)
+_PARTS = tuple("number part quantity material thickness_mm width_mm height_mm area_mm2 cut_mm".split())
 _SHEETS = ("sheet", "material", "thickness_mm", "pieces", "numbers", "used_percent", "cut_mm")
 
 

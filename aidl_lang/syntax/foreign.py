@@ -250,12 +250,7 @@ def word_for_sign(t: Trouble) -> SyntaxProblem | None:
     return wrong("E0109", message, t.span(), right=sign, repair=t.exchanged(sign))
 
 
-_MODULES = frozenset(
-    (
-        *("math", "numpy", "np", "cadquery", "build123d", "aidl", "typing", "random", "sys", "os"),
-        *("ezdxf", "maker", "jscad"),
-    )
-)
+_MODULES = frozenset("math numpy np cadquery build123d aidl typing random sys os ezdxf maker jscad".split())
 
 
 def import_of_module(t: Trouble) -> SyntaxProblem | None:

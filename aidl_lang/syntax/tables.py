@@ -367,10 +367,10 @@ UNIT_WORDS = {
 }  # fmt: skip
 
 STATEMENT_WORDS = frozenset(
-    (
-        *("param", "var", "let", "constrain", "prefer", "assert", "for", "if", "import", "fn"),
-        *("shape", "constraint", "alias", "template", "construction", "todo"),
-    )
+    """
+    param var let constrain prefer assert for if import fn shape constraint alias template
+    construction todo
+    """.split()
 )
 
 # The tokens that may begin a value, and those that may end one.

@@ -117,8 +117,8 @@ class Vocabulary:
 
 
 NAMES = (
-    *("primitives", "operations", "exactness", "built_in", "shapes", "templates"),
-    *("constraints", "relations", "functions", "constants"),
+    *"primitives operations exactness built_in shapes templates".split(),
+    *"constraints relations functions constants".split(),
 )
 """The classes of names that a program may use without defining them."""
 

@@ -27,10 +27,10 @@ _PAGE = (300.0, 150.0)
 """Width and height, in pixels, of a page that states none."""
 
 _UNSEEN = frozenset(
-    (
-        *("defs", "symbol", "clipPath", "mask", "marker", "pattern", "linearGradient", "radialGradient"),
-        *("filter", "style", "script", "title", "desc", "metadata", "view", "font", "cursor"),
-    )
+    """
+    defs symbol clipPath mask marker pattern linearGradient radialGradient filter style script title
+    desc metadata view font cursor
+    """.split()
 )
 """Elements that draw nothing where they stand."""
 _GROUPS = frozenset({"svg", "g", "a", "switch"})

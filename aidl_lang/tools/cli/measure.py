@@ -142,10 +142,7 @@ def _width(width: Width | None, part: Part, size: float) -> str:
 
 
 def _table(parts: Sequence[Part]) -> Iterator[str]:
-    heads = (
-        *("body", "area mm²", "perimeter mm", "size mm", "holes"),
-        *("wall mm", "gap mm", "mass g", "quantity"),
-    )
+    heads = tuple("body,area mm²,perimeter mm,size mm,holes,wall mm,gap mm,mass g,quantity".split(","))
     rows = [heads]
     for p in parts:
         left, bottom, right, top = p.box

@@ -43,13 +43,12 @@ _CALL_CLASSES = {
     **dict.fromkeys(("operations", "exactness", "built_in", "functions"), "call.function"),
 }
 CLASSES = (
-    *("comment.line", "comment.documentation", "comment.block"),
+    *"comment.line comment.documentation comment.block".split(),
     *_KEYWORD_CLASSES.values(),
-    *("kind", "attribute", "name.structure", "name.template", "name.function", "name.definition"),
-    *("name.parameter", "name.argument", "name.type", "name.member", "name.everywhere", "name.constant"),
-    *("name.module", "name"),
-    *("call.shape", "call.constraint", "call.function", "call.member", "call"),
-    *("number", "unit", "string", "escape", "unknown"),
+    *"kind attribute name.structure name.template name.function name.definition name.parameter".split(),
+    *"name.argument name.type name.member name.everywhere name.constant name.module name".split(),
+    *"call.shape call.constraint call.function call.member call".split(),
+    *"number unit string escape unknown".split(),
 )
 """Every class that a piece may have; `.` leads from the general to the special.
 
@@ -303,10 +302,7 @@ _BLOCKS = ("block", "constraints")
 _OPENING = ("CALL", "(", "[")
 _BEHIND_STRUCTURE = ("{", "at", "rotated")
 _BEFORE_STATEMENTS = frozenset(
-    (
-        *(END, UNKNOWN, "{", "}", ";", ")", "]", "NAME", "NUMBER", "STRING"),
-        *("true", "false", "True", "False", "todo", "construction", "template"),
-    )
+    (END, UNKNOWN, *"{ } ; ) ] NAME NUMBER STRING true false True False todo construction template".split())
 )
 """Tokens after which a statement may begin."""
 

@@ -126,11 +126,10 @@ class Reference:
 
 
 TOPICS = (
-    *("rectangles", "corners", "rounds", "polygons", "triangles", "quadrilaterals", "geometry", "path"),
-    *("text", "arcs", "arches", "wheels", "figures", "profiles", "curves", "cords", "links", "spline"),
-    *("relations", "placement", "arrangements", "sizes", "constraints", "tangency", "symmetry", "measures"),
-    *("clearance", "operations", "outlines", "patterns", "joints", "hardware", "mounts", "fasteners", "gear"),
-    *("dimensions", "language", "numbers", "colors", "exactness"),
+    *"rectangles corners rounds polygons triangles quadrilaterals geometry path text arcs arches".split(),
+    *"wheels figures profiles curves cords links spline relations placement arrangements sizes".split(),
+    *"constraints tangency symmetry measures clearance operations outlines patterns joints".split(),
+    *"hardware mounts fasteners gear dimensions language numbers colors exactness".split(),
 )
 """Topics that come first, in this order; the others follow by name."""
 

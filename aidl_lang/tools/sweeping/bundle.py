@@ -147,9 +147,7 @@ def fault(diagnostic: Diagnostic) -> Fault:
 
 # --- What came of a variant: data that goes between processes, into the cache and into tables.
 
-MEASURES = (
-    *("width", "height", "area", "perimeter", "bodies", "pieces", "holes", "wall", "gap", "volume", "mass"),
-)
+MEASURES = tuple("width height area perimeter bodies pieces holes wall gap volume mass".split())
 """The measures of the whole, in mm, mm², mm³ and g; None where there is none, or it is not known."""
 ASSERT = "E0604"
 OF_KIND = frozenset(

@@ -146,8 +146,8 @@ _BY_TERM = (
 _BY_PROGRAM = {"kitty": "kitty", "ghostty": "kitty", "WezTerm": "iterm", "iTerm.app": "iterm"}
 """WezTerm follows the protocol of iTerm2 more closely than that of kitty, which can be switched off there."""
 _OTHERS = (
-    *("VTE_VERSION", "XTERM_VERSION", "KONSOLE_VERSION", "ALACRITTY_WINDOW_ID", "WT_SESSION"),
-    *("INSIDE_EMACS", "VIM_TERMINAL", "NVIM"),
+    *"VTE_VERSION XTERM_VERSION KONSOLE_VERSION ALACRITTY_WINDOW_ID WT_SESSION".split(),
+    *"INSIDE_EMACS VIM_TERMINAL NVIM".split(),
 )
 """Set by terminals that show no pictures, or only if told to."""
 _TRUE_COLOUR = ("truecolor", "24bit")

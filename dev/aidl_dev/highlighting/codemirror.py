@@ -10,9 +10,8 @@ from aidl_lang.tools.reference.collect import reference
 from aidl_lang.tools.vocabulary import SNIPPETS, vocabulary
 
 _HEAD = "// Made by `make colours` from aidl_lang/tools/vocabulary.py; do not edit.\n"
-_LISTS = (
-    *("kinds", "attributes", "units", "types", "everywhere", "constants"),
-    *("statements", "clauses", "keywords", "reserved"),
+_LISTS = tuple(
+    "kinds attributes units types everywhere constants statements clauses keywords reserved".split()
 )
 
 

@@ -64,10 +64,7 @@ _BESIDE = {
 }
 """Other things that a call mentions."""
 
-_ALSO = (
-    *("distance", "horizontal_distance", "vertical_distance", "gap", "clearance", "angle", "length"),
-    "radius",
-)
+_ALSO = tuple("distance horizontal_distance vertical_distance gap clearance angle length radius".split())
 """Measures, which constrain when compared."""
 
 _WITHOUT_TABLE = ("meshes", "dimension")

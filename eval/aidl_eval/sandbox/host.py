@@ -23,7 +23,7 @@ sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import drawn
 import lock
 
-_MODULES = (  # noqa: SIM905 (a list of words)
+_MODULES = (
     "math cmath random itertools functools operator collections collections.abc dataclasses typing enum copy "
     "string re fractions decimal statistics bisect heapq numbers abc types warnings contextlib textwrap "
     "linecache tokenize encodings.idna colorsys time datetime numpy numpy.linalg json"
