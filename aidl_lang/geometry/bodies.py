@@ -78,9 +78,9 @@ def empty_clips(root: SolvedStructure, drawn: Collection[str]) -> Iterator[Diagn
 # The region of a solid is (own faces + solid children) − holes + islands: a hole cuts all of the structure
 # that holds it, a solid inside a hole is an island. An assembly keeps its solid children as separate bodies;
 # what it draws itself is one more, and its holes cut them all. Where this leaves a choice:
-#
-# - an assembly inside a solid is united with it, all its bodies; - a hole inside a hole cuts what that hole
-# cuts, and the islands beside it; - solids and holes inside a drawing are treated as in an assembly.
+# - an assembly inside a solid is united with it, all its bodies;
+# - a hole inside a hole cuts what that hole cuts, and the islands beside it;
+# - solids and holes inside a drawing are treated as in an assembly.
 
 _FEW_HOLES, _FEW_VERTICES = 8, 200
 """Numbers below which each hole is compared with the whole material."""
