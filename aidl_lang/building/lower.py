@@ -7,6 +7,7 @@ frame that no constraint mentions, an argument that was read while building, an 
 from __future__ import annotations
 
 from collections.abc import Hashable, Iterable, Iterator, Mapping, Sequence
+from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,9 +30,9 @@ from aidl_lang.building.values import Num, PointVal
 from aidl_lang.checking.units import ANGLE, LENGTH
 from aidl_lang.common.records import record
 from aidl_lang.solver import Constraint as SolverConstraint
-from aidl_lang.solver import Problem, Relation, Row
+from aidl_lang.solver import Problem, Relation, Row, Solution
 from aidl_lang.solver.expression import TapeBuilder
-from aidl_lang.solver.problem import constraint_arrays
+from aidl_lang.solver.problem import Floats, constraint_arrays
 
 _RADIAN = 180.0 / np.pi
 
@@ -43,35 +44,44 @@ LEAST_SHARE = 1e-3
 """The least part of a kept size that remains when it gives way: it may shrink, but not vanish."""
 
 
-@record()
-class Lowered:
-    """A problem for the solver with what its numbers stand for.
+@record(kw_only=True)
+class Lowered(Problem):
+    """A problem for the solver that knows what its numbers stand for.
 
-    unknowns  by their number in the problem
-    stated    for each constraint of the problem, the one of the model; None for those that come with the
-              nature of a size or a box (never negative)
-    groups    path of the structure that each group of the problem is
+    unknowns  by their number
+    stated    for each constraint, the one of the model; None for those that come with the nature of a size
+              or a box (never negative)
+    groups    path of the structure that each group is
     """
 
-    problem: Problem
     unknowns: tuple[Unknown, ...]
     stated: tuple[Constraint | None, ...]
     groups: tuple[str, ...]
 
+    def by_unknown(self, values: Floats) -> dict[Unknown, float]:
+        return dict(zip(self.unknowns, values.tolist(), strict=True))
+
+    def stated_at(self, numbers: Iterable[int]) -> list[Constraint]:
+        """Returns the constraints of the model behind those with some numbers."""
+        return [stated for number in numbers if (stated := self.stated[number]) is not None]
+
+    @property
+    def preference(self) -> list[int]:
+        """The constraints as conflicts take them for granted: unwritten ones first, then as written."""
+
+        def place(index: int) -> tuple[bool, str, int, int]:
+            if (stated := self.stated[index]) is None:
+                return (False, "", 0, index)
+            return (stated.wording is not None, stated.span.source.name, stated.span.start, index)
+
+        return sorted(range(len(self.stated)), key=place)
+
+
+Solved: TypeAlias = Solution[Lowered]
+
 
 def lower(model: Model) -> Lowered:
     return _Lowering(model).run()
-
-
-def preference(lowered: Lowered) -> list[int]:
-    """Returns the constraints as conflicts take them for granted: unwritten ones first, then as written."""
-
-    def place(index: int) -> tuple[bool, str, int, int]:
-        if (stated := lowered.stated[index]) is None:
-            return (False, "", 0, index)
-        return (stated.wording is not None, stated.span.source.name, stated.span.start, index)
-
-    return sorted(range(len(lowered.stated)), key=place)
 
 
 class _Lowering:
@@ -110,7 +120,7 @@ class _Lowering:
         observables = tuple((self.groups[s], o) for s in self.structures for o in self._observables(s))
         found = tuple(self.numbers)
         parents = [self.groups[s.parent] if s.parent else -1 for s in self.structures]
-        problem = Problem(
+        return Lowered(
             tape=self.tape.finish(),
             initial=np.array([u.guess for u in found], dtype=np.float64),
             scale=np.array([_RADIAN / self.size if u.angular else 1.0 for u in found], dtype=np.float64),
@@ -135,8 +145,10 @@ class _Lowering:
             clinging=frozenset(self.groups[s] for parent in self.structures for s in _clinging(parent)),
             observables=observables,
             names=tuple(u.path for u in found),
+            unknowns=found,
+            stated=tuple(stated),
+            groups=tuple(s.path for s in self.structures),
         )
-        return Lowered(problem, found, tuple(stated), tuple(s.path for s in self.structures))
 
     # --- Unknowns ------------------------------------------------------------------------------
 

@@ -24,6 +24,7 @@ from aidl_lang.solver.loosening import Scope, Tier, tiers_at
 from aidl_lang.solver.newton import Clock
 from aidl_lang.solver.problem import (
     GroupFailure,
+    P,
     Problem,
     Row,
     Settings,
@@ -297,15 +298,15 @@ class _Mentions(dict[int, frozenset[int]]):
         return found
 
 
-def solve(problem: Problem, settings: Settings = Settings(), memory: Memory | None = None) -> Solution:
+def solve(problem: P, settings: Settings = Settings(), memory: Memory | None = None) -> Solution[P]:
     """Solves `problem` as far as it can be solved. Same input, same output, to the last digit.
 
     With a `memory`, which is brought up to date, only what has changed since its last solve is solved.
     """
-    if settings.stages is Stages.FLAT:
-        problem = replace(problem, holder=np.zeros_like(problem.holder))
-    hierarchy = Hierarchy(problem, settings, Clock(settings.seconds))
-    recollection = None if memory is None else Recollection(memory, problem, settings)
+    is_flat = settings.stages is Stages.FLAT
+    sought = replace(problem, holder=np.zeros_like(problem.holder)) if is_flat else problem
+    hierarchy = Hierarchy(sought, settings, Clock(settings.seconds))
+    recollection = None if memory is None else Recollection(memory, sought, settings)
     with np.errstate(all="ignore"):  # what overflows is found not to hold
         hierarchy.run(recollection)
     violation, rows = hierarchy.violations(), problem.rows
@@ -317,6 +318,7 @@ def solve(problem: Problem, settings: Settings = Settings(), memory: Memory | No
     if recollection is not None:
         recollection.close(hierarchy.stages, status is Status.SOLVED and not hierarchy.failures)
     return Solution(
+        problem,
         status=status,
         values=hierarchy.reached,
         residuals=tuple(residuals.tolist()),

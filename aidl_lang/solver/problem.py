@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import field, replace
 from enum import StrEnum
 from functools import cached_property
-from typing import Any
+from typing import Any, Generic, Self, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -169,7 +169,7 @@ class Problem:
             for i, (holder, weight) in enumerate(zip(self.holder.tolist(), self.weight.tolist(), strict=True))
         )
 
-    def with_constraints(self, constraints: Sequence[Constraint]) -> Problem:
+    def with_constraints(self, constraints: Sequence[Constraint]) -> Self:
         """Returns the problem with other constraints on the same unknowns."""
         return replace(self, **constraint_arrays(constraints))
 
@@ -319,9 +319,13 @@ class StageReport:
     """The constraints that no search from the first guesses satisfied, where one from elsewhere did."""
 
 
+P = TypeVar("P", bound=Problem)
+
+
 @record()
-class Solution:
+class Solution(Generic[P]):
     """
+    problem        what was solved
     values         (n,) solved unknowns
     residuals      per constraint, the largest violation of its rows (0 for an inequality that holds),
                    evaluated on the original expressions at `values`, in the units of the row
@@ -330,6 +334,7 @@ class Solution:
     stages         the stages tried, in order
     """
 
+    problem: P
     status: Status
     values: Floats
     residuals: tuple[float, ...]
