@@ -16,7 +16,7 @@ from aidl_lang.geometry.curves import Arc, Bezier, Line, Piece, Vec, in_runs, la
 from aidl_lang.geometry.faces import WINDING, OwnFace, Shape, own_faces, union_of
 from aidl_lang.geometry.intersect import near_pairs
 from aidl_lang.geometry.network import Network, with_finer_chords
-from aidl_lang.geometry.sections import Section, Traced, trace_all, union
+from aidl_lang.geometry.sections import Section, traced, union
 from aidl_lang.geometry.solved import SolvedGeometry, SolvedStructure, at, edges_of
 
 T = TypeVar("T")
@@ -414,40 +414,33 @@ def _filled_hole(
 # nothing in cutting formats.
 
 
-def visible_seams(
-    network: Network, mass: Mass, traced: Mapping[str, Traced]
-) -> Iterator[tuple[str, tuple[Piece, ...]]]:
+def visible_seams(walk: Bodies, mass: Mass) -> Iterator[tuple[str, tuple[Piece, ...]]]:
     """Yields the edges of each united structure inside the body, by its path, each drawn once."""
-    outline = traced[mass.structure.path].edges
-    candidates = sorted({edge for path in mass.inner for edge in traced[path].edges} - outline)
-    mask = mass.section.mask(network.midpoints(candidates))
+    outlines = {path: walk.sections[path].edges for path in mass.inner}
+    candidates = sorted(frozenset[int]().union(*outlines.values()) - mass.section.edges)
+    mask = mass.section.mask(walk.network.midpoints(candidates))
     left = {edge for edge, within in zip(candidates, mask, strict=True) if within}
     for path in mass.inner:
-        edges = sorted(traced[path].edges & left)
+        edges = sorted(outlines[path] & left)
         left.difference_update(edges)
         if edges:
-            yield path, tuple(_merged(network, edges))
+            yield path, tuple(_merged(walk.network, edges))
 
 
-def inner_seams(
-    network: Network,
-    mass: Mass,
-    traced: Mapping[str, Traced],
-    sections: Mapping[str, Section],
-    faces: Mapping[str, Sequence[OwnFace]],
-) -> Iterator[tuple[str, tuple[Piece, ...]]]:
-    """Yields the edges of the faces that some structures of a body draw, as far as they lie inside it and no
-    later face of the structure, and no structure in it, lies over them; by the path of the structure, each
-    drawn once.
+def inner_seams(walk: Bodies, mass: Mass, asked: Collection[str]) -> Iterator[tuple[str, tuple[Piece, ...]]]:
+    """Yields the edges of the faces that the `asked` structures of a body draw, as far as they lie inside it
+    and no later face of the structure, and no structure in it, lies over them; by the path of the structure,
+    each drawn once.
     """
-    taken = {edge for path in (*mass.inner, mass.structure.path) for edge in traced[path].edges}
-    for path in (*mass.inner, mass.structure.path):
-        own = [face.section for face in faces.get(path, ())]
-        over = union([sections[inner] for inner in mass.inner if inner.startswith(f"{path}.")])
+    network, paths = walk.network, (*mass.inner, mass.structure.path)
+    taken = {edge for path in paths for edge in walk.sections[path].edges}
+    for path in paths:
+        own = [face.section for face in walk.faces.get(path, ()) if path in asked]
+        over = union([walk.sections[inner] for inner in mass.inner if inner.startswith(f"{path}.")])
         found: set[int] = set()
-        outlines = trace_all(network, own)
-        for section, outline in zip(reversed(own), reversed(outlines), strict=True):
-            candidates = sorted(outline.edges - taken)
+        traced(own)  # all at once
+        for section in reversed(own):
+            candidates = sorted(section.edges - taken)
             spots = network.midpoints(candidates)
             seen = mass.section.mask(spots) & ~over.mask(spots)
             found.update(edge for edge, is_seen in zip(candidates, seen, strict=True) if is_seen)

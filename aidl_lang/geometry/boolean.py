@@ -17,7 +17,7 @@ from aidl_lang.geometry.curves import Arc, Bezier, Circle, Floats, Line, Piece, 
 from aidl_lang.geometry.intersect import Crossing, Table, all_intersections, inside, near_rows
 from aidl_lang.geometry.network import CHORD, RELATIVE_TOLERANCE, Hulls, Network
 from aidl_lang.geometry.region import Face, Loop, Region
-from aidl_lang.geometry.sections import Section, arranged, closed_loop, faces_of, filled, trace, union
+from aidl_lang.geometry.sections import Section, arranged, closed_loop, faces_of, filled, union
 
 if TYPE_CHECKING:
     from aidl_lang.common.font_files import Curve
@@ -344,13 +344,12 @@ class Contact:
 
 @record()
 class Solid:
-    """A body, or an area that others lie on: its region, also as polygons of the network, its place in the
-    order of drawing, and its colour, if it has one. One that `is_clear` hides nothing.
+    """A body, or an area that others lie on: its place in the order of drawing, and its colour, if it has
+    one. One that `is_clear` hides nothing.
     """
 
     path: str
-    region: Region
-    section: Section = field(repr=False, compare=False)
+    section: Section
     place: float
     color: str | None
     is_clear: bool
@@ -377,35 +376,35 @@ def contacts(network: Network, solids: Sequence[Solid]) -> Contacts:
 
     def near() -> tuple[tuple[str, str], ...]:
         reach = max(UNNOTICED, network.tolerance)
-        pairs = sorted(near_rows([s.region.box for s in solids], reach + network.tolerance).tolist())
+        pairs = sorted(near_rows([s.section.region.box for s in solids], reach + network.tolerance).tolist())
         couples = ((solids[i], solids[j]) for i, j in pairs)
         return tuple(
             (a.path, b.path)
             for a, b in couples
-            if _shared(network, a, b, exactly=False) > 0 or lie_within(a.region, b.region, reach)
+            if _shared(a, b, exactly=False) > 0 or lie_within(a.section.region, b.section.region, reach)
         )
 
     def everything() -> tuple[Contact, ...]:
         pairs: Iterable[tuple[int, int]] = combinations(range(len(solids)), 2)
         if len(solids) > ALL_PAIRS:
-            pairs = sorted(near_rows([s.region.box for s in solids], NEAR * network.size).tolist())
+            pairs = sorted(near_rows([s.section.region.box for s in solids], NEAR * network.size).tolist())
         return tuple(_compare(network, solids[i], solids[j]) for i, j in pairs)
 
-    return Contacts(tuple((s.path, s.region) for s in solids), Later(near), Later(everything))
+    return Contacts(tuple((s.path, s.section.region) for s in solids), Later(near), Later(everything))
 
 
-def _shared(network: Network, a: Solid, b: Solid, *, exactly: bool) -> float:
+def _shared(a: Solid, b: Solid, *, exactly: bool) -> float:
     """Returns the area that two bodies share; that of their polygons will do if it is no thin one."""
     common = a.section & b.section
     if common.is_nothing:
         return 0.0
-    return trace(network, common).region.area if exactly or common.is_thin else common.area
+    return common.region.area if exactly or common.is_thin else common.area
 
 
 def _compare(network: Network, a: Solid, b: Solid) -> Contact:
-    if (shared := _shared(network, a, b, exactly=True)) > 0:
+    if (shared := _shared(a, b, exactly=True)) > 0:
         return Contact(a.path, b.path, "overlapping", area=shared)
-    closest = region_distance(a.region, b.region)
+    closest = region_distance(a.section.region, b.section.region)
     gap = closest[0] if closest and closest[0] > network.tolerance else None
     return Contact(a.path, b.path, "touching" if gap is None else "apart", gap)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from importlib import import_module
 from itertools import accumulate
 from typing import Any, Literal, TypeVar
@@ -31,13 +31,29 @@ _CORNERS = 32
 
 
 class Section:
-    """An area of the plane bounded by polygons: a `CrossSection` of Manifold, with its area and its box."""
+    """An area of the plane bounded by polygons: a `CrossSection` of Manifold, with its area and its box. One
+    of a network has its exact outlines, too. An empty one may be of none.
+    """
 
-    def __init__(self, shape: Any) -> None:
-        self._shape = shape
+    def __init__(self, shape: Any, network: Network | None = None) -> None:
+        self._shape, self.network = shape, network
         self.is_empty: bool = shape.is_empty()
         self.area: float = shape.area()
         self.box: Bounds = shape.bounds()
+
+    @cached_property
+    def _outlines(self) -> tuple[Region, frozenset[int]]:
+        return _trace([self])[0]
+
+    @property
+    def region(self) -> Region:
+        """The exact region, faces and loops in a canonical order."""
+        return self._outlines[0]
+
+    @property
+    def edges(self) -> frozenset[int]:
+        """The edges of the network that bound it."""
+        return self._outlines[1]
 
     def num_contour(self) -> int:
         return int(self._shape.num_contour())
@@ -50,18 +66,18 @@ class Section:
 
     def decompose(self) -> list[Section]:
         """Returns its connected parts."""
-        return list(map(Section, self._shape.decompose()))
+        return [Section(part, self.network) for part in self._shape.decompose()]
 
     def holes(self) -> list[Section]:
         """Returns the areas that its inner outlines enclose."""
-        whole = fill([p for p in self.to_polygons() if polygon_area(p) > 0], "NonZero")
+        whole = fill([p for p in self.to_polygons() if polygon_area(p) > 0], "NonZero", self.network)
         return (whole - self).decompose()
 
     def __sub__(self, other: Section) -> Section:
-        return Section(self._shape - other._shape) if self.may_meet(other) else self
+        return Section(self._shape - other._shape, self.network) if self.may_meet(other) else self
 
     def __and__(self, other: Section) -> Section:
-        return Section(self._shape ^ other._shape) if self.may_meet(other) else union([])
+        return Section(self._shape ^ other._shape, self.network) if self.may_meet(other) else union([])
 
     def may_meet(self, other: Section) -> bool:
         """Tells whether the boxes overlap by more than nothing."""
@@ -116,10 +132,19 @@ def _manifold() -> Any:
     return import_module("manifold3d")
 
 
-def fill(polygons: Sequence[Polygon], rule: Literal["EvenOdd", "NonZero"]) -> Section:
+def fill(
+    polygons: Sequence[Polygon], rule: Literal["EvenOdd", "NonZero"], network: Network | None = None
+) -> Section:
     m = _manifold()
     kept = [p for p in polygons if len(p) > 2]
-    return Section(m.CrossSection(kept, getattr(m.FillRule, rule)) if kept else m.CrossSection())
+    return Section(m.CrossSection(kept, getattr(m.FillRule, rule)) if kept else m.CrossSection(), network)
+
+
+def section_of(region: Region, network: Network) -> Section:
+    """Returns the section of a region whose outlines are not those of the network that has its grid."""
+    found = fill([network.on_grid(p) for p in region.polygons(network.tolerance)], "EvenOdd", network)
+    found._outlines = region, frozenset()
+    return found
 
 
 def widened(polygon: Polygon, by: float, rough: float = 0.0) -> Polygon:
@@ -148,10 +173,9 @@ def union(sections: Sequence[Section]) -> Section:
     """Returns the union of any number of sections."""
     m = _manifold()
     full = [s for s in sections if not s.is_empty]
-    if len(full) == 1:
-        return full[0]
-    shapes = [s._shape for s in full]
-    return Section(m.CrossSection.batch_boolean(shapes, m.OpType.Add) if shapes else m.CrossSection())
+    if len(full) < 2:
+        return full[0] if full else Section(m.CrossSection())
+    return Section(m.CrossSection.batch_boolean([s._shape for s in full], m.OpType.Add), full[0].network)
 
 
 def filled(
@@ -167,7 +191,7 @@ def filled(
         number += len(outline)
         if uses:
             polygons.append(network.polyline(uses))
-    return fill(polygons, rule)
+    return fill(polygons, rule, network)
 
 
 # --- Turns the polygons of a boolean back into outlines of exact curves.
@@ -179,14 +203,6 @@ def filled(
 T = TypeVar("T")
 STRAIGHT = -3
 """Stands for the edge of a result that no curve owns: the straight way between its two vertices."""
-
-
-@record(slots=True)
-class Traced:
-    """A region and the edges of the network that bound it."""
-
-    region: Region
-    edges: frozenset[int]
 
 
 @record(slots=True)
@@ -215,33 +231,37 @@ class Sides:
     starts: list[list[int]]
 
 
-def trace(network: Network, section: Section) -> Traced:
-    """Returns the exact region whose polygons Manifold returned, faces and loops in a canonical order."""
-    return trace_all(network, [section])[0]
+def traced(sections: Sequence[Section]) -> list[Region]:
+    """Returns the exact regions of many sections of a network, found at once, which spares most of the table
+    look-ups.
+    """
+    for section, found in zip(sections, _trace(sections), strict=True):
+        section._outlines = found
+    return [section.region for section in sections]
 
 
-def trace_all(network: Network, sections: Sequence[Section]) -> list[Traced]:
-    """Traces many regions at once, which spares most of the table look-ups."""
-    faces = [_components(section) for section in sections]
-    sides = _sides(network, [polygon for section in faces for face in section for polygon in face])
-    number = 0
-    result = []
-    for section in faces:
-        used: set[int] = set()
-        traced = []
-        for face in section:
+def _trace(sections: Sequence[Section]) -> list[tuple[Region, frozenset[int]]]:
+    network = next((section.network for section in sections if not section.is_empty), None)
+    if network is None:
+        return [(Region(), frozenset())] * len(sections)
+    parts = [_components(section) for section in sections]
+    sides = _sides(network, [polygon for section in parts for part in section for polygon in part])
+    number, result = 0, []
+    for section in parts:
+        used, faces = set[int](), list[Face]()
+        for part in section:
             checkpoint()
-            numbers = range(number, number + len(face))
-            traced += faces_of([loop for k in numbers for loop in _loops(network, sides, k, used)])
-            number += len(face)
-        traced.sort(key=lambda face: face.outer.start)
-        result.append(Traced(Region(tuple(traced)), frozenset(used)))
+            numbers = range(number, number + len(part))
+            faces += faces_of([loop for k in numbers for loop in _loops(network, sides, k, used)])
+            number += len(part)
+        faces.sort(key=lambda face: face.outer.start)
+        result.append((Region(tuple(faces)), frozenset(used)))
     return result
 
 
 def arranged(curves: Sequence[Piece], area: Callable[[Network], Section]) -> Region:
     """Returns the region of an area that is put together from the network of some curves."""
-    return with_finer_chords(Network(curves), lambda network: trace(network, area(network)).region)
+    return with_finer_chords(Network(curves), lambda network: area(network).region)
 
 
 def _components(section: Section) -> list[list[Polygon]]:

@@ -30,7 +30,7 @@ from aidl_lang.geometry.curves import Bounds, Line, Piece, Vec, larger_side, uni
 from aidl_lang.geometry.drawing import Stroke
 from aidl_lang.geometry.network import Network, with_finer_chords
 from aidl_lang.geometry.region import Face, Region, measure
-from aidl_lang.geometry.sections import filled, trace_all, union
+from aidl_lang.geometry.sections import filled, traced, union
 
 # --- As text.
 
@@ -315,16 +315,16 @@ def parts(before: Sequence[Region], after: Sequence[Region]) -> dict[str, Region
     if not pieces:
         return dict.fromkeys(FILLS, Region())
 
-    def traced(network: Network) -> list[Region]:
+    def covered(network: Network) -> list[Region]:
         sections, number = [], 0
         for region in (*before, *after):
             sections.append(filled(network, [loop.pieces for loop in region.loops], number))
             number += sum(len(loop.pieces) for loop in region.loops)
         first, last = union(sections[: len(before)]), union(sections[len(before) :])
         wanted = [first & last, first - last, last - first]
-        return [outline.region for outline in trace_all(network, wanted)]
+        return traced(wanted)
 
-    return dict(zip(FILLS, with_finer_chords(Network(pieces), traced), strict=True))
+    return dict(zip(FILLS, with_finer_chords(Network(pieces), covered), strict=True))
 
 
 def _box(*versions: Version) -> Bounds:
