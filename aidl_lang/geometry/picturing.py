@@ -134,9 +134,7 @@ def _literal(model: Model, finish: Finish) -> ast.Number | None:
 
 def _floating(lowered: Lowered, freedom: Freedom) -> Iterator[str]:
     """Yields the paths of structures with guessed values that no constraint ties to what is around them."""
-    guessed: set[tuple[int, int]] = set()
-    if lowered.axis is not None:
-        guessed.update(zip(lowered.group.tolist(), lowered.axis.tolist(), strict=True))
+    guessed = set(zip(lowered.group.tolist(), lowered.axis.tolist(), strict=True))
     for group in freedom.loose:
         if (group, 0) in guessed and (group, 1) in guessed:
             yield lowered.groups[group]
