@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import cached_property, lru_cache
 from importlib import import_module
@@ -25,6 +25,10 @@ from aidl_lang.solver.linear import each_once
 NEGLIGIBLE = 16 * RELATIVE_TOLERANCE
 """Width in grid units below which an area is rounding: the drawing measures about 16 of them."""
 
+
+Rule = Literal["EvenOdd", "NonZero"]
+Outlined = tuple[Sequence[Sequence[Piece]], Rule]
+"""Outlines, and the rule by which they are filled."""
 
 _CORNERS = 32
 """Of the polygon that stands for a circle around a corner."""
@@ -132,9 +136,7 @@ def _manifold() -> Any:
     return import_module("manifold3d")
 
 
-def fill(
-    polygons: Sequence[Polygon], rule: Literal["EvenOdd", "NonZero"], network: Network | None = None
-) -> Section:
+def fill(polygons: Sequence[Polygon], rule: Rule, network: Network | None = None) -> Section:
     m = _manifold()
     kept = [p for p in polygons if len(p) > 2]
     return Section(m.CrossSection(kept, getattr(m.FillRule, rule)) if kept else m.CrossSection(), network)
@@ -178,20 +180,23 @@ def union(sections: Sequence[Section]) -> Section:
     return Section(m.CrossSection.batch_boolean([s._shape for s in full], m.OpType.Add), full[0].network)
 
 
-def filled(
-    network: Network,
-    outlines: Iterable[Sequence[object]],
-    number: int,
-    rule: Literal["EvenOdd", "NonZero"] = "EvenOdd",
-) -> Section:
-    """Returns the area in outlines of a network's curves from `number` on, without those too small to see."""
-    polygons = []
-    for outline in outlines:
-        uses = [use for own in network.uses[number : number + len(outline)] for use in own]
-        number += len(outline)
-        if uses:
-            polygons.append(network.polyline(uses))
-    return fill(polygons, rule, network)
+def overlaid(shapes: Sequence[Outlined], areas: Callable[..., Sequence[Section]]) -> list[Region]:
+    """Returns the regions of areas that are put together from those of some shapes, in one network."""
+
+    def found(network: Network) -> list[Region]:
+        curves, sections = iter(network.uses), []
+        for outlines, rule in shapes:
+            walks = ([use for _ in outline for use in next(curves)] for outline in outlines)
+            # One too small to see has no edges.
+            sections.append(fill([network.polyline(walk) for walk in walks if walk], rule, network))
+        return traced(areas(*sections))
+
+    pieces = [piece for outlines, _ in shapes for outline in outlines for piece in outline]
+    return with_finer_chords(Network(pieces), found)
+
+
+def outlined(region: Region) -> Outlined:
+    return [loop.pieces for loop in region.loops], "EvenOdd"
 
 
 # --- Turns the polygons of a boolean back into outlines of exact curves.
@@ -257,11 +262,6 @@ def _trace(sections: Sequence[Section]) -> list[tuple[Region, frozenset[int]]]:
         faces.sort(key=lambda face: face.outer.start)
         result.append((Region(tuple(faces)), frozenset(used)))
     return result
-
-
-def arranged(curves: Sequence[Piece], area: Callable[[Network], Section]) -> Region:
-    """Returns the region of an area that is put together from the network of some curves."""
-    return with_finer_chords(Network(curves), lambda network: area(network).region)
 
 
 def _components(section: Section) -> list[list[Polygon]]:
