@@ -105,18 +105,10 @@ class _Lowering:
 
     def run(self) -> Lowered:
         self._number_unknowns()
-        stated: list[Constraint | None] = []
-        constraints: list[SolverConstraint] = []
+        stated = [c for c in (*self.model.constraints, *self._bounds()) if c.holder in self.groups]
         # In an order of their own, so that the order of writing cannot show in the last digits.
-        for constraint in sorted(
-            [*self.model.constraints, *self._bounds()], key=lambda c: (c.text, c.label, c.span.start)
-        ):
-            if constraint.holder in self.groups:
-                constraints.append(self._constraint(constraint))
-                stated.append(constraint)
-        for never in self._never_vanishing():
-            constraints.append(never)
-            stated.append(None)
+        stated.sort(key=lambda c: (c.text, c.label, c.span.start))
+        constraints = [*map(self._constraint, stated), *self._never_vanishing()]
         observables = tuple((self.groups[s], o) for s in self.structures for o in self._observables(s))
         found = tuple(self.numbers)
         parents = [self.groups[s.parent] if s.parent else -1 for s in self.structures]
@@ -146,7 +138,7 @@ class _Lowering:
             observables=observables,
             names=tuple(u.path for u in found),
             unknowns=found,
-            stated=tuple(stated),
+            stated=(*stated, *[None] * (len(constraints) - len(stated))),
             groups=tuple(s.path for s in self.structures),
         )
 
@@ -267,7 +259,7 @@ class _Lowering:
     def _constraint(self, constraint: Constraint) -> SolverConstraint:
         rows = tuple(self._row(c) for c in constraint.comparisons)
         placed = {u for c in constraint.comparisons for u in c.placed}
-        named = self.named[constraint] if constraint in self.named else self._named(constraint)
+        named = self.named.get(constraint, ((), ()))
         whole, inside = (frozenset(self.groups[s] for s in each if s in self.groups) for each in named)
         numbers = frozenset(self.numbers[u] for u in placed if u in self.numbers)
         return SolverConstraint(
