@@ -7,6 +7,7 @@ frame that no constraint mentions, an argument that was read while building, an 
 from __future__ import annotations
 
 from collections.abc import Hashable, Iterable, Iterator, Mapping, Sequence
+from functools import cache
 from typing import TypeAlias
 
 import numpy as np
@@ -87,20 +88,19 @@ def lower(model: Model) -> Lowered:
 class _Lowering:
     def __init__(self, model: Model) -> None:
         self.model = model
-        self.structures = list(model.root.walk())
-        self.groups = {s: i for i, s in enumerate(self.structures)}
+        self.groups = {s: i for i, s in enumerate(model.root.walk())}
         self.tape = TapeBuilder()
         self.make = {op: getattr(self.tape, op) for op in ex.EVALUATE}
         self.node_of: dict[Expression, int] = {}
         self.numbers: dict[Unknown, int] = {}
         self.variables: dict[Structure, list[Unknown]] = {}
-        self.mentioned: set[Unknown] = set()
+        parts = (part for c in model.constraints for part in c.comparisons)
+        self.mentioned = set(ex.unknowns(side for part in parts for side in (part.left, part.right)))
         self.holders = {c.holder for c in model.constraints}
-        self.standing: dict[Structure, bool] = {}
-        self.named: dict[Constraint, tuple[set[Structure], set[Structure]]] = {}
+        self.named = {c: self._named(c) for c in model.constraints}
         self.named_things: dict[Structure, set[Hashable]] = {}
         # Every number that defines the drawing, by structure.
-        self.seen = {s: [at for _, _, at in seen(s)] for s in self.structures}
+        self.seen = {s: [at for _, _, at in seen(s)] for s in self.groups}
         self.size = _extent(self.seen, model.root)
 
     def run(self) -> Lowered:
@@ -109,9 +109,9 @@ class _Lowering:
         # In an order of their own, so that the order of writing cannot show in the last digits.
         stated.sort(key=lambda c: (c.text, c.label, c.span.start))
         constraints = [*map(self._constraint, stated), *self._never_vanishing()]
-        observables = tuple((self.groups[s], o) for s in self.structures for o in self._observables(s))
+        observables = tuple((self.groups[s], o) for s in self.groups for o in self._observables(s))
         found = tuple(self.numbers)
-        parents = [self.groups[s.parent] if s.parent else -1 for s in self.structures]
+        stands = cache(self._stands)
         return Lowered(
             tape=self.tape.finish(),
             initial=np.array([u.guess for u in found], dtype=np.float64),
@@ -123,33 +123,30 @@ class _Lowering:
             ),
             axis=np.array([_axis(u) for u in found], dtype=np.intp),
             longest=np.array([_LONGEST_TURN if u.angular else np.inf for u in found], dtype=np.float64),
-            parent=np.array(parents, dtype=np.intp),
+            parent=np.array([self.groups[s.parent] if s.parent else -1 for s in self.groups], dtype=np.intp),
             **constraint_arrays(constraints),
             named=True,
-            standing=np.array([self._stands(u) for u in found], dtype=np.bool_),
+            standing=np.array([not u.angular and stands(u.frame_of) for u in found], dtype=np.bool_),
             spanned=np.array([_is_spanned(u) for u in found], dtype=np.bool_),
-            rigid=np.array([self._is_rigid(s) for s in self.structures], dtype=np.bool_),
+            rigid=np.array([self._is_rigid(s) for s in self.groups], dtype=np.bool_),
             sealed=np.array([self._sealed(u.owner) for u in found], dtype=np.intp),
             thing=_numbered(
                 (u.holder, u.field if u.kept and not _is_spanned(u) else u.field.rpartition(".")[0])
                 for u in found
             ),
-            clinging=frozenset(self.groups[s] for parent in self.structures for s in _clinging(parent)),
+            clinging=frozenset(self.groups[s] for parent in self.groups for s in _clinging(parent)),
             observables=observables,
             names=tuple(u.path for u in found),
             unknowns=found,
             stated=(*stated, *[None] * (len(constraints) - len(stated))),
-            groups=tuple(s.path for s in self.structures),
+            groups=tuple(s.path for s in self.groups),
         )
 
     # --- Unknowns ------------------------------------------------------------------------------
 
     def _number_unknowns(self) -> None:
         """Numbers the unknowns that can move: the drawing's, and both coordinates of mentioned frames."""
-        parts = (part for c in self.model.constraints for part in c.comparisons)
-        mentioned = self.mentioned = set(ex.unknowns(e for part in parts for e in (part.left, part.right)))
-        drawn = {u for u in ex.unknowns(self._observed()) if u.frame_of is None}
-        self.named = {c: self._named(c) for c in self.model.constraints}
+        shown = self.mentioned.union(u for u in ex.unknowns(self._observed()) if u.frame_of is None)
         for constraint in self.model.constraints:
             if constraint.weight is None and not constraint.is_inherent:
                 self._name_things(constraint)
@@ -163,7 +160,7 @@ class _Lowering:
         }
         for unknown in self.model.unknowns:
             is_variable = _is_variable(unknown)
-            live = is_variable or unknown in mentioned or unknown in drawn or unknown.frame_of in named
+            live = is_variable or unknown in shown or unknown.frame_of in named
             if live and not unknown.exact and unknown.owner in self.groups:
                 self.numbers[unknown] = len(self.numbers)
                 if is_variable:
@@ -181,17 +178,14 @@ class _Lowering:
         """Returns the structure that an unknown moves as a whole; None for one of its contents."""
         return unknown.owner if self._is_outline(unknown) else unknown.frame_of
 
-    def _stands(self, unknown: Unknown) -> bool:
-        """Tells whether an unknown shifts a frame that lies on its parent's, with something in it at an exact
-        place: that is exact in the parent, too, as long as the frame stays. A frame turns only on request.
+    def _stands(self, s: Structure | None) -> bool:
+        """Tells whether a frame lies on its parent's, with something in it at an exact place: that is exact
+        in the parent, too, as long as the frame stays. It turns only on request.
         """
-        s = unknown.frame_of
-        if s is None or unknown.angular:
+        if s is None:
             return False
-        if s not in self.standing:
-            lies_on = s.frame.x.value == s.frame.y.value == s.frame.rotation.value == 0.0
-            self.standing[s] = lies_on and any(map(_is_exact, self.seen[s]))
-        return self.standing[s]
+        lies_on = s.frame.x.value == s.frame.y.value == s.frame.rotation.value == 0.0
+        return lies_on and any(map(_is_exact, self.seen[s]))
 
     def _sealed(self, s: Structure) -> int:
         """Returns the depth of the innermost `@rigid` structure around this; 0 for none, -1 for the root."""

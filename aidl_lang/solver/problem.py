@@ -143,18 +143,10 @@ class Problem:
         """Fills in what is not given: nothing is a place along an axis, stands, or is rigid, steps have no
         limit, and all unknowns are one thing.
         """
-        unsaid = {
-            "axis": -1,
-            "longest": np.inf,
-            "standing": 0,
-            "spanned": 0,
-            "rigid": 0,
-            "sealed": 0,
-            "thing": 0,
-        }
-        for name, value in unsaid.items():
+        for name in ("axis", "longest", "standing", "spanned", "rigid", "sealed", "thing"):
             given, wanted = getattr(self, name), len(self.parent if name == "rigid" else self.initial)
             if len(given) != wanted:
+                value = {"axis": -1, "longest": np.inf}.get(name, 0)
                 object.__setattr__(self, name, np.full(wanted, value, dtype=given.dtype))
 
     @cached_property
