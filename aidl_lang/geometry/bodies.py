@@ -7,7 +7,6 @@ from collections import defaultdict
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import field, replace
 from itertools import count
-from typing import TypeVar
 
 from aidl_lang.common.diagnostics import Diagnostic, Label
 from aidl_lang.common.prose import counted, named
@@ -18,8 +17,6 @@ from aidl_lang.geometry.intersect import near_pairs
 from aidl_lang.geometry.network import Network, with_finer_chords
 from aidl_lang.geometry.sections import Section, traced, union
 from aidl_lang.geometry.solved import SolvedGeometry, SolvedStructure, at, edges_of
-
-T = TypeVar("T")
 
 # --- What structures are clipped to, in the network of curves: solids and holes lie inside of it.
 
@@ -147,8 +144,9 @@ Finding = Covered | LooseCurves | Diagnostic
 @record(frozen=False)
 class Bodies:
     """The state of the walk and its result; `sections` has each structure that has material or cuts, `faces`
-    what each draws itself. `clips`: for each structure that is clipped, what it may lie in. `blind`: the
-    holes that end in their solid, which stays whole as seen from above.
+    what each draws itself, `bodies` what is left of material in the end. `clips`: for each structure that is
+    clipped, what it may lie in. `blind`: the holes that end in their solid, which stays whole as seen from
+    above.
     """
 
     network: Network
@@ -158,6 +156,7 @@ class Bodies:
     sections: dict[str, Section] = field(default_factory=dict)
     faces: dict[str, list[OwnFace]] = field(default_factory=dict)
     findings: list[Finding] = field(default_factory=list)
+    bodies: list[Mass] = field(default_factory=list)
 
     def masses(self, structure: SolvedStructure) -> list[Mass]:
         """Returns the material of a structure that is not a hole."""
@@ -500,22 +499,21 @@ def with_gaps_closed(
     network: Network,
     root: SolvedStructure,
     shapes: Mapping[str, Sequence[Shape]],
-    arranged: Callable[[Network], T],
-    findings_of: Callable[[T], Sequence[Finding]],
-) -> tuple[Network, list[Gap], T]:
-    """Returns the network with small gaps between curves closed, these gaps, and what is arranged then."""
+    arranged: Callable[[Network], Bodies],
+) -> tuple[Bodies, list[Gap]]:
+    """Returns what is arranged of the network with small gaps between curves closed, and these gaps."""
     found = with_finer_chords(network, arranged)
-    gaps = _open_gaps(network, findings_of(found), shapes)
+    gaps = _open_gaps(network, found.findings, shapes)
     while gaps:
         joined = Network(_without_gaps(network.curves, gaps), box=network.box)
         then = with_finer_chords(joined, arranged)
-        kept = list(_effective(gaps, findings_of(then)))
+        kept = list(_effective(gaps, then.findings))
         if len(kept) == len(gaps):
-            network, found = joined, then
+            found = then
             break
         gaps = kept
-    welded = _welded_gaps(network, root.walk(), shapes)
-    return network, [*gaps, *_effective(welded, findings_of(found))], found
+    welded = _welded_gaps(found.network, root.walk(), shapes)
+    return found, [*gaps, *_effective(welded, found.findings)]
 
 
 def _open_gaps(

@@ -53,7 +53,6 @@ from aidl_lang.geometry.styles import (
 SLIT = "slit"
 _Curves: TypeAlias = tuple[list[Piece], list[Bounds]]
 _Shapes: TypeAlias = dict[str, list[Shape]]
-_Arranged: TypeAlias = tuple[Bodies, list[Mass], dict[str, Region]]
 
 
 @record()
@@ -188,10 +187,10 @@ def draw(model: SolvedModel) -> tuple[Drawing, Findings]:
         s: replace(styles[s], opacity=0.0, stroke=0.0) for s, _, is_bare in veiled if is_bare
     }
     made = {path: [s for s in of if s.geometry.path not in aside] for path, of in shapes.items()}
-    network, gaps, (walk, masses, regions) = with_gaps_closed(
-        network, root, shapes, partial(_arranged, root, made, clips, blind), lambda found: found[0].findings
-    )
-    bodies = tuple(Body(path, regions[path], of_bodies[path]) for path in (m.structure.path for m in masses))
+    walk, gaps = with_gaps_closed(network, root, shapes, partial(_arranged, root, made, clips, blind))
+    network, masses = walk.network, walk.bodies
+    regions = {path: section.region for path, section in walk.sections.items()}
+    bodies = tuple(Body(m.structure.path, m.section.region, of_bodies[m.structure.path]) for m in masses)
     order = places_of(root)
     solids = [
         Solid(b.path, m.section, order[b.path], b.style.color, b.style.is_clear)
@@ -212,7 +211,7 @@ def draw(model: SolvedModel) -> tuple[Drawing, Findings]:
         for m in (masses if asked else ())
         for path, pieces in inner_seams(walk, m, asked)
     )
-    scene = _Scene(root, shapes, engraved, styles, order, walk, masses)
+    scene = _Scene(root, shapes, engraved, styles, order, walk)
     areas = dict(scene.areas(aside, ink[0]))
     lying = [*solids, *(area.seen for area in areas.values())]
     ground = legibility.Ground(network, sorted(lying, key=lambda body: body.place), *ink, order)
@@ -232,7 +231,7 @@ def draw(model: SolvedModel) -> tuple[Drawing, Findings]:
             if not (isinstance(f, Covered) and scene.is_seen(f, areas)):
                 notes += finding_notes(f, network)
         notes += detached_notes(root, paths, touching)
-        notes += piece_notes(root, walk, masses, solids, touching.near())
+        notes += piece_notes(root, walk, solids, touching.near())
         notes += [*scene.unseen(ground), *scene.covered_letters(ground)]
         notes += legibility.overhanging_notes(root, bodies, strokes)
         notes += legibility.colliding_notes(root, strokes, network.tolerance)
@@ -254,14 +253,17 @@ def draw(model: SolvedModel) -> tuple[Drawing, Findings]:
 
 def _arranged(
     root: SolvedStructure, shapes: _Shapes, clips: Clips, blind: Collection[str], network: Network
-) -> _Arranged:
-    """Returns the bodies, and the outlines of everything that has material or cuts, in order of writing."""
+) -> Bodies:
+    """Returns the walk with its bodies, and with the sections of all that has material or cuts in order of
+    writing, their regions found.
+    """
     walk = Bodies(network, shapes, dict(clip_sections(network, root, clips)), blind)
     masses = _root_masses(walk, root)
     walk.sections.update((m.structure.path, m.section) for m in masses)
-    paths = [s.path for s in root.walk() if s.path in walk.sections]
-    found = dict(zip(paths, traced([walk.sections[path] for path in paths]), strict=True))
-    return walk, [m for m in masses if found[m.structure.path]], found
+    walk.sections = {s.path: walk.sections[s.path] for s in root.walk() if s.path in walk.sections}
+    traced(list(walk.sections.values()))
+    walk.bodies = [m for m in masses if m.section.region]
+    return walk
 
 
 def _collect(root: SolvedStructure, notes: list[Diagnostic]) -> tuple[_Curves, _Curves, _Shapes, _Shapes]:
@@ -330,7 +332,6 @@ class _Scene:
     styles: dict[str, Style]
     order: Mapping[str, int]
     walk: Bodies
-    masses: Sequence[Mass]
 
     @cached_property
     def colored(self) -> set[str]:
@@ -350,7 +351,7 @@ class _Scene:
         but the holes in it if it lies `aside`, as a veil.
         """
         network = self.walk.network
-        mass_of = {part.path: m for m in self.masses for part in united_parts(m.structure)}
+        mass_of = {part.path: m for m in self.walk.bodies for part in united_parts(m.structure)}
         plain: dict[str, list[Shape]] = {}  # by body: what has its colour
         for path, m in mass_of.items():
             of = (s for s in self.shapes[path] if not is_filled(s.geometry, m.structure.kind))
@@ -468,7 +469,7 @@ class _Scene:
     def covered_letters(self, ground: legibility.Ground) -> Iterator[Diagnostic]:
         """Warnings about letters of solids and holes that later bodies lie over."""
         # The masses of an assembly follow its own.
-        place = {s.path: self.order[m.structure.path] for m in self.masses for s in m.structure.walk()}
+        place = {s.path: self.order[m.structure.path] for m in self.walk.bodies for s in m.structure.walk()}
         for structure in self.root.walk():
             for face in self.walk.faces.get(structure.path, ()) if structure.path in place else ():
                 if all(g.type == LETTERING for g in face.geometries):

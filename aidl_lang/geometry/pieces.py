@@ -88,11 +88,7 @@ def _meet(one: Section, other: Section) -> bool:
 
 
 def piece_notes(
-    root: SolvedStructure,
-    walk: Bodies,
-    masses: Sequence[Mass],
-    solids: Sequence[Solid],
-    pairs: Sequence[tuple[str, str]],
+    root: SolvedStructure, walk: Bodies, solids: Sequence[Solid], pairs: Sequence[tuple[str, str]]
 ) -> Iterator[Diagnostic]:
     """Yields a warning for pieces of a solid that no chain of touching pieces links to the rest, and for each
     hole that cuts pieces free which nothing holds, as the inside of an O. A solid that is the whole program
@@ -100,17 +96,17 @@ def piece_notes(
     """
     free = marked_detached(root)
     known = {solid.path: solid for solid in solids}
-    for mass in masses:
+    for mass in walk.bodies:
         solid = mass.structure
         if solid is not root and solid.kind == "solid" and solid.path not in free:
             pieces = _pieces(walk, mass)
             if len(pieces) > 1:
                 yield from _notes(solid, _groups(pieces, known[solid.path], known, pairs))
-    held, holes = defaultdict[str, list[Solid]](list), _holes(root, masses)
+    held, holes = defaultdict[str, list[Solid]](list), _holes(root, walk.bodies)
     for a, b in pairs:
         held[a].append(known[b])
         held[b].append(known[a])
-    for mass in masses:
+    for mass in walk.bodies:
         path = mass.structure.path
         if path not in free and mass.section.num_contour() > 1:
             yield from _cut_free(walk, mass, holes.get(path, ()), held[path])
