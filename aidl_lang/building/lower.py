@@ -50,8 +50,8 @@ class Lowered(Problem):
     """A problem for the solver that knows what its numbers stand for.
 
     unknowns  by their number
-    stated    for each constraint, the one of the model; None for those that come with the nature of a size
-              or a box (never negative)
+    stated    for each constraint that was lowered, the one of the model; None for those that come with the
+              nature of a size or a box (never negative)
     groups    path of the structure that each group is
     """
 

@@ -246,9 +246,11 @@ def traced(sections: Sequence[Section]) -> list[Region]:
 
 
 def _trace(sections: Sequence[Section]) -> list[tuple[Region, frozenset[int]]]:
-    network = next((section.network for section in sections if not section.is_empty), None)
-    if network is None:
+    full = [section for section in sections if not section.is_empty]
+    if not full:
         return [(Region(), frozenset())] * len(sections)
+    network = full[0].network
+    assert network is not None
     parts = [_components(section) for section in sections]
     sides = _sides(network, [polygon for section in parts for part in section for polygon in part])
     number, result = 0, []
