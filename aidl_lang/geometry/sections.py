@@ -14,7 +14,7 @@ import numpy as np
 
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
-from aidl_lang.geometry.curves import Arc, Bounds, Circle, Floats, Ints, Line, Mask, Piece, Vec
+from aidl_lang.geometry.curves import Arc, Bounds, Circle, Floats, Line, Mask, Piece, Vec
 from aidl_lang.geometry.intersect import inside
 from aidl_lang.geometry.network import NODE, RELATIVE_TOLERANCE, UNKNOWN, Edge, Network, with_finer_chords
 from aidl_lang.geometry.region import Face, Loop, Polygon, Region, length, polygon_area
@@ -221,21 +221,6 @@ class Run:
     end: Vec
 
 
-@record(slots=True)
-class Sides:
-    """The sides of many polygons in one table: where each vertex belongs, and the edge each side follows.
-
-    Polygon k has the rows `bounds[k]:bounds[k + 1]`; `starts[k]` are those at which another edge begins.
-    """
-
-    vertices: Floats
-    bounds: list[int]
-    owner: Ints
-    place: Ints
-    edges: Ints
-    starts: list[list[int]]
-
-
 def traced(sections: Sequence[Section]) -> list[Region]:
     """Returns the exact regions of many sections of a network, found at once, which spares most of the table
     look-ups.
@@ -252,14 +237,14 @@ def _trace(sections: Sequence[Section]) -> list[tuple[Region, frozenset[int]]]:
     network = full[0].network
     assert network is not None
     parts = [_components(section) for section in sections]
-    sides = _sides(network, [polygon for section in parts for part in section for polygon in part])
+    sides = _Sides(network, [polygon for section in parts for part in section for polygon in part])
     number, result = 0, []
     for section in parts:
         used, faces = set[int](), list[Face]()
         for part in section:
             checkpoint()
             numbers = range(number, number + len(part))
-            faces += faces_of([loop for k in numbers for loop in _loops(network, sides, k, used)])
+            faces += faces_of([loop for k in numbers for loop in sides.loops(k, used)])
             number += len(part)
         faces.sort(key=lambda face: face.outer.start)
         result.append((Region(tuple(faces)), frozenset(used)))
@@ -302,34 +287,98 @@ def _holders(outers: list[Loop], holes: list[Loop]) -> list[int]:
     return [int(k) for k in holder]
 
 
-def _sides(network: Network, polygons: list[Floats]) -> Sides:
-    """Looks up all vertices, then finds the edge from each to the next one of its polygon."""
-    bounds = [0, *accumulate(len(p) for p in polygons)]
-    vertices = np.concatenate(polygons) if polygons else np.zeros((0, 2))
-    after = np.arange(1, len(vertices) + 1)
-    after[[b - 1 for b in bounds[1:]]] = bounds[:-1]
-    before = np.empty_like(after)
-    before[after] = np.arange(len(after))
-    owner, place = network.look_up(vertices)
-    owner_after = owner[after]
-    edges = np.where(owner >= 0, owner, np.where(owner_after >= 0, owner_after, STRAIGHT))
-    between = np.flatnonzero((owner == NODE) & (owner_after == NODE))
-    ways = zip(place[between].tolist(), place[after[between]].tolist(), strict=True)
-    edges[between] = [network.straight.get(way, STRAIGHT) for way in ways]
-    # Chords that cross where their curves only touch leave vertices unknown to the network.
-    changed = (owner >= 0) & (owner_after >= 0) & (owner != owner_after)
-    unsure = np.flatnonzero((owner == UNKNOWN) | (owner_after == UNKNOWN) | changed)
-    if len(unsure):
-        network.blur(vertices[each_once(np.concatenate((unsure, after[unsure])))])
-        edges[unsure] = network.nearest_edges((vertices[unsure] + vertices[after[unsure]]) / 2)
-    for k in np.flatnonzero(owner == UNKNOWN):
-        node = _touched_node(network, int(edges[before[k]]), int(edges[k]), network.position(vertices[k]))
-        if node is not None:
-            owner[k], place[k] = NODE, node
-    begins = (edges[after] != edges)[before] | (owner == NODE) | (edges == STRAIGHT)
-    rows = np.flatnonzero(begins)
-    starts = [part.tolist() for part in np.split(rows, np.searchsorted(rows, bounds[1:-1]))]
-    return Sides(vertices, bounds, owner, place, edges, starts)
+class _Sides:
+    """The sides of many polygons in one table: where each vertex belongs, and the edge each side follows.
+
+    Polygon k has the rows `bounds[k]:bounds[k + 1]`; `starts[k]` are those at which another edge begins.
+    """
+
+    def __init__(self, network: Network, polygons: list[Floats]) -> None:
+        """Looks up all vertices, then finds the edge from each to the next one of its polygon."""
+        self.network = network
+        bounds = self.bounds = [0, *accumulate(len(p) for p in polygons)]
+        vertices = self.vertices = np.concatenate(polygons)
+        after = np.arange(1, len(vertices) + 1)
+        after[[b - 1 for b in bounds[1:]]] = bounds[:-1]
+        before = np.empty_like(after)
+        before[after] = np.arange(len(after))
+        owner, place = self.owner, self.place = network.look_up(vertices)
+        owner_after = owner[after]
+        edges = np.where(owner >= 0, owner, np.where(owner_after >= 0, owner_after, STRAIGHT))
+        between = np.flatnonzero((owner == NODE) & (owner_after == NODE))
+        ways = zip(place[between].tolist(), place[after[between]].tolist(), strict=True)
+        edges[between] = [network.straight.get(way, STRAIGHT) for way in ways]
+        # Chords that cross where their curves only touch leave vertices unknown to the network.
+        changed = (owner >= 0) & (owner_after >= 0) & (owner != owner_after)
+        unsure = np.flatnonzero((owner == UNKNOWN) | (owner_after == UNKNOWN) | changed)
+        if len(unsure):
+            network.blur(vertices[each_once(np.concatenate((unsure, after[unsure])))])
+            edges[unsure] = network.nearest_edges((vertices[unsure] + vertices[after[unsure]]) / 2)
+        for k in np.flatnonzero(owner == UNKNOWN):
+            node = _touched_node(network, int(edges[before[k]]), int(edges[k]), network.position(vertices[k]))
+            if node is not None:
+                owner[k], place[k] = NODE, node
+        begins = (edges[after] != edges)[before] | (owner == NODE) | (edges == STRAIGHT)
+        rows = np.flatnonzero(begins)
+        self.edges = edges
+        self.starts = [part.tolist() for part in np.split(rows, np.searchsorted(rows, bounds[1:-1]))]
+
+    def loops(self, number: int, used: set[int]) -> list[tuple[float, Loop]]:
+        """Returns the exact loops of a polygon with their areas, without those thinner than the tolerance;
+        adds the edges that they follow to `used`.
+        """
+        network = self.network
+        low, high = self.bounds[number], self.bounds[number + 1]
+        starts = self.starts[number] or [low]
+        runs: list[Run] = []
+        for begin, end in zip(starts, [*starts[1:], starts[0]], strict=True):
+            edge = int(self.edges[begin])
+            used.add(edge)
+            second = begin + 1 if begin + 1 < high else low
+            last = end - 1 if end > low else high - 1
+            runs.append(self._run(edge, (begin, second), (end, last)))
+        used.discard(STRAIGHT)
+        result = []
+        for simple in _split_at_pinches(_snapped(runs, network.tolerance)):
+            loop = _to_loop(network, joined(simple, lambda a, b: _continue(network, a, b)))
+            area = loop.area
+            if abs(area) > network.tolerance * sum(map(length, loop.pieces)) / 2:
+                result.append((area, loop))
+        return result
+
+    def _run(self, number: int, begin: tuple[int, int], end: tuple[int, int]) -> Run:
+        """Returns the run along one edge; its ends are given with the vertices of the run beside them."""
+        first, start = self._spot(begin[0])
+        last, stop = self._spot(end[0])
+        if number == STRAIGHT:
+            return Run(None, 0.0, 1.0, start, stop)
+        edge = self.network.edges[number]
+        if first is not None and last is not None and {first, last} == {edge.start, edge.end}:
+            forward = first == edge.start
+            if edge.start == edge.end:
+                forward = int(self.place[begin[1]]) < len(self.network.inner((number, True))) / 2
+            t0, t1 = (edge.t0, edge.t1) if forward else (edge.t1, edge.t0)
+        else:
+            t0, t1 = (self._parameter(edge, vertex, beside) for vertex, beside in (begin, end))
+        return Run(edge.curve, t0, t1, start, stop)
+
+    def _spot(self, vertex: int) -> tuple[int | None, Vec]:
+        """Returns the node at a vertex, if there is one, and its place in millimetres."""
+        if self.owner[vertex] == NODE:
+            node = int(self.place[vertex])
+            return node, self.network.nodes[node]
+        return None, self.network.position(self.vertices[vertex])
+
+    def _parameter(self, edge: Edge, vertex: int, beside: int) -> float:
+        node, p = self._spot(vertex)
+        curve = self.network.curves[edge.curve]
+        if node in (edge.start, edge.end):
+            if edge.start != edge.end:
+                return edge.t0 if node == edge.start else edge.t1
+            # Both ends of the part are here: the one that the vertex beside it is near to.
+            t = curve.nearest(self._spot(beside)[1])
+            return edge.t0 if t < (edge.t0 + edge.t1) / 2 else edge.t1
+        return min(edge.t1, max(edge.t0, curve.nearest(p)))
 
 
 def _touched_node(network: Network, a: int, b: int, p: Vec) -> int | None:
@@ -351,27 +400,6 @@ def _touched_node(network: Network, a: int, b: int, p: Vec) -> int | None:
     return node if is_one and math.dist(curve.point(t), p) <= reach else None
 
 
-def _loops(network: Network, sides: Sides, number: int, used: set[int]) -> list[tuple[float, Loop]]:
-    """Returns the exact loops of a polygon with their areas, without those thinner than the tolerance."""
-    low, high = sides.bounds[number], sides.bounds[number + 1]
-    starts = sides.starts[number] or [low]
-    runs: list[Run] = []
-    for begin, end in zip(starts, [*starts[1:], starts[0]], strict=True):
-        edge = int(sides.edges[begin])
-        used.add(edge)
-        second = begin + 1 if begin + 1 < high else low
-        last = end - 1 if end > low else high - 1
-        runs.append(_run(network, sides, edge, (begin, second), (end, last)))
-    used.discard(STRAIGHT)
-    result = []
-    for simple in _split_at_pinches(_snapped(runs, network.tolerance)):
-        loop = _to_loop(network, joined(simple, lambda a, b: _continue(network, a, b)))
-        area = loop.area
-        if abs(area) > network.tolerance * sum(map(length, loop.pieces)) / 2:
-            result.append((area, loop))
-    return result
-
-
 def _split_at_pinches(runs: list[Run]) -> list[list[Run]]:
     """Returns loops that pass no point twice, of a polygon that may (as a circle in a square does)."""
     if len({run.start for run in runs}) == len(runs):
@@ -388,43 +416,6 @@ def _split_at_pinches(runs: list[Run]) -> list[list[Run]]:
                 del place[passed.start]
             del stack[first:]
     return loops
-
-
-def _run(network: Network, sides: Sides, number: int, begin: tuple[int, int], end: tuple[int, int]) -> Run:
-    """Returns the run along one edge; its ends are given with the vertices of the run beside them."""
-    place = sides.place
-    first, start = _spot(network, sides, begin[0])
-    last, stop = _spot(network, sides, end[0])
-    if number == STRAIGHT:
-        return Run(None, 0.0, 1.0, start, stop)
-    edge = network.edges[number]
-    if first is not None and last is not None and {first, last} == {edge.start, edge.end}:
-        forward = first == edge.start
-        if edge.start == edge.end:
-            forward = int(place[begin[1]]) < len(network.inner((number, True))) / 2
-        t0, t1 = (edge.t0, edge.t1) if forward else (edge.t1, edge.t0)
-    else:
-        t0, t1 = (_parameter(network, sides, edge, vertex, beside) for vertex, beside in (begin, end))
-    return Run(edge.curve, t0, t1, start, stop)
-
-
-def _spot(network: Network, sides: Sides, vertex: int) -> tuple[int | None, Vec]:
-    """Returns the node at a vertex, if there is one, and its place in millimetres."""
-    if sides.owner[vertex] == NODE:
-        node = int(sides.place[vertex])
-        return node, network.nodes[node]
-    return None, network.position(sides.vertices[vertex])
-
-
-def _parameter(network: Network, sides: Sides, edge: Edge, vertex: int, beside: int) -> float:
-    node, p = _spot(network, sides, vertex)
-    if node in (edge.start, edge.end):
-        if edge.start != edge.end:
-            return edge.t0 if node == edge.start else edge.t1
-        # Both ends of the part are here: the one that the vertex beside it is near to.
-        t = network.curves[edge.curve].nearest(_spot(network, sides, beside)[1])
-        return edge.t0 if t < (edge.t0 + edge.t1) / 2 else edge.t1
-    return min(edge.t1, max(edge.t0, network.curves[edge.curve].nearest(p)))
 
 
 def _snapped(runs: list[Run], tolerance: float) -> list[Run]:
