@@ -28,7 +28,7 @@ from aidl_lang.typecheck import check as typecheck
 
 if TYPE_CHECKING:
     from aidl_lang.building.expression import Evaluator
-    from aidl_lang.building.lower import Lowered
+    from aidl_lang.building.lower import Lowered, Solved
     from aidl_lang.explaining.failures import Explanation, Rereading
     from aidl_lang.explaining.giving import GaveWay
     from aidl_lang.explaining.trials import Trials
@@ -36,7 +36,6 @@ if TYPE_CHECKING:
     from aidl_lang.geometry.solved import SolvedModel
     from aidl_lang.solver.analysis import Freedom
     from aidl_lang.solver.hierarchy import Memory
-    from aidl_lang.solver.problem import Solution
 
 _Noted: TypeAlias = "tuple[list[Diagnostic], list[Diagnostic]]"
 
@@ -52,8 +51,8 @@ def front(
 class _Tries(Asked):
     """Ways to try a program again: other texts of it, other readings of its calls."""
 
-    def trials(self, lowered: Lowered, solution: Solution, states_constants: bool = False) -> Trials:
-        """Returns what tries other texts of the program with this problem and solution."""
+    def trials(self, solution: Solved, states_constants: bool = False) -> Trials:
+        """Returns what tries other texts of the program with this solution."""
         from aidl_lang.building.lower import lower
         from aidl_lang.explaining.trials import Trials
 
@@ -68,7 +67,7 @@ class _Tries(Asked):
         def said(changed: SourceFile) -> list[Diagnostic]:
             return compile(changed, self.world, self.params, unexplained.settings).diagnostics
 
-        return Trials(self.source, build, said, lowered, solution, solving)
+        return Trials(self.source, build, said, solution, solving)
 
     def answered(
         self, found: list[Diagnostic], everything: Sequence[Diagnostic], stated: Model
@@ -86,9 +85,8 @@ class _Tries(Asked):
         )
         if not is_decided or (built := self.built(states_constants=True)) is None:
             return found
-        lowered = lower(built.model)
-        solution = with_failing_constants(lowered, solve(lowered.problem, replace(solving, explain=False)))
-        return with_remedies(found, everything, self.trials(lowered, solution, states_constants=True))
+        solution = with_failing_constants(solve(lower(built.model), replace(solving, explain=False)))
+        return with_remedies(found, everything, self.trials(solution, states_constants=True))
 
     def built(
         self, turned: Mapping[int, int] | None = None, states_constants: bool = False
@@ -193,14 +191,13 @@ def placed(
         built = interpret(program, params, settings.building)
         if has_errors(built.diagnostics):
             return None
-        lowered = lower(built.model)
-        solution = solve(lowered.problem, settings.solving)
+        solution = solve(lower(built.model), settings.solving)
     if solution.status is not Status.SOLVED:
         return None
-    return built.model, Evaluator(dict(zip(lowered.unknowns, solution.values.tolist(), strict=True)))
+    return built.model, Evaluator(solution.problem.by_unknown(solution.values))
 
 
-def redrawn(outcome: Compiled, lowered: Lowered, solution: Solution) -> Compiled:
+def redrawn(outcome: Compiled, solution: Solved) -> Compiled:
     """Returns an outcome with its parts placed by another solution of the same model, as while one is
     dragged. What there is to say of the drawing is said anew, with fixes that were not tried; what there was
     of the text and its solution stays.
@@ -210,9 +207,9 @@ def redrawn(outcome: Compiled, lowered: Lowered, solution: Solution) -> Compiled
     if outcome.built is None:
         raise ValueError("the program is wrong, so there is nothing to draw")
     watch = Stopwatch()
-    freedom = Later(partial(_freed, lowered, solution, watch))
+    freedom = Later(partial(_freed, solution, watch))
     with working, within(outcome.limit, "drawing"):
-        model, evaluator, drawing, notes, found = _drawn(outcome.built, lowered, solution, freedom, watch)
+        model, evaluator, drawing, notes, found = _drawn(outcome.built, solution, freedom, watch)
 
     def facts() -> Facts:
         late, drawn = _examined(outcome.limit, lambda: ([], notes.everything()))
@@ -245,22 +242,21 @@ def _examined(limit: float, noted: Callable[[], _Noted]) -> _Noted:
         return [reason.diagnostic], []
 
 
-def _freed(lowered: Lowered, solution: Solution, watch: Stopwatch) -> Freedom:
-    from aidl_lang.building.lower import preference
+def _freed(solution: Solved, watch: Stopwatch) -> Freedom:
     from aidl_lang.solver.analysis import analyse
 
     with watch("freedom"):
-        return analyse(lowered.problem, solution, preference(lowered))
+        return analyse(solution, solution.problem.preference)
 
 
-def _is_troubled(solution: Solution) -> bool:
+def _is_troubled(solution: Solved) -> bool:
     return bool(solution.failures) or any(s.concession is not None or s.despite for s in solution.stages)
 
 
-def _follows(lowered: Lowered, solution: Solution, span: Span) -> bool:
+def _follows(solution: Solved, span: Span) -> bool:
     from aidl_lang.explaining.giving import follows
 
-    return follows(lowered, solution, span)
+    return follows(solution, span)
 
 
 class _Finish:
@@ -282,7 +278,7 @@ class _Finish:
         except TooLongError as reason:
             found = ordered([*audible(self.diagnostics, self.built.allowances), reason.diagnostic])
             return Compiled("wrong", Later(None, Facts(found)), self.watch.seconds, known)
-        lowered, failures, find = self.lowered, self.failures, Later(self.facts)
+        failures, find = self.failures, Later(self.facts)
         gave_way = self.settings.strict and self.given
         if not self.is_solved or self.drawn.errors or has_errors(self.asserted) or gave_way:
             find()
@@ -294,9 +290,9 @@ class _Finish:
             self.model,
             self.drawing,
             show,
-            tuple((lowered.groups[stage.group], stage) for stage in self.solution.stages),
+            tuple((self.solution.problem.groups[stage.group], stage) for stage in self.solution.stages),
             Later(lambda: tuple(failure.conflict for failure in failures)),
-            partial(_follows, lowered, self.solution),
+            partial(_follows, self.solution),
             self.built.model,
             self.evaluator,
             self.drawn.everything,
@@ -308,39 +304,39 @@ class _Finish:
         from aidl_lang.solver import Status, solve
 
         with self.watch("lower"):
-            self.lowered = lower(self.built.model)
+            lowered = lower(self.built.model)
         with self.watch("solve"):
-            self.solution = solve(self.lowered.problem, self.settings.solving, memory)
+            self.solution = solve(lowered, self.settings.solving, memory)
             if _is_troubled(self.solution):
                 from aidl_lang.explaining.failures import reread
 
                 build, solving = self.tries.built, self.settings.solving
-                self.other, self.solution = reread(self.built, self.lowered, self.solution, build, solving)
+                self.other, self.solution = reread(self.built, self.solution, build, solving)
         if (other := self.other) is not None:
-            self.built, self.lowered, self.solution = other.built, other.lowered, other.solution
+            self.built, self.solution = other.built, other.solution
         self.is_solved = self.solution.status is Status.SOLVED
-        self.freedom = Later(partial(_freed, self.lowered, self.solution, self.watch))
-        self.tried = cache(partial(self.tries.trials, self.lowered, self.solution))
+        self.freedom = Later(partial(_freed, self.solution, self.watch))
+        self.tried = cache(partial(self.tries.trials, self.solution))
         if _is_troubled(self.solution):
             from aidl_lang.explaining.failures import explained
             from aidl_lang.explaining.giving import gave_way
 
             with self.watch("reasons"):
-                self.given = gave_way(self.lowered, self.solution, self.settings.solving)
+                self.given = gave_way(self.solution, self.settings.solving)
             self.failures = explained(self.tried())
 
     def draw(self) -> None:
         """Raises TooLongError."""
         with within(self.settings.drawing, "drawing"):
-            made = _drawn(self.built.model, self.lowered, self.solution, self.freedom, self.watch)
+            made = _drawn(self.built.model, self.solution, self.freedom, self.watch)
         self.model, self.evaluator, self.drawing, self.drawn, self.asserted = made
         if self.model.changed:
             from aidl_lang.explaining.giving import with_reasons
 
-            self.model = with_reasons(self.model, self.given, self.lowered)
+            self.model = with_reasons(self.model, self.given, self.solution.problem)
 
     def facts(self) -> Facts:
-        trials = self.tried() if self.failures else self.tries.trials(self.lowered, self.solution)
+        trials = self.tried() if self.failures else self.tries.trials(self.solution)
         elsewhere = self._elsewhere(trials)  # the time of new trials has not begun
         found, notes = _examined(self.settings.drawing, self._noted)
         passing = {(d.code, d.span) for d in [*self.asserted, *notes]}
@@ -364,9 +360,9 @@ class _Finish:
         """Returns the diagnostics on the solution, and those on the drawing if the parts are in place."""
         from aidl_lang.explaining.outcome import solution_notes
 
-        root, lowered, free = self.built.model.root, self.lowered, self.freedom()
+        root, free = self.built.model.root, self.freedom()
         with self.watch("notes"):
-            found = solution_notes(root, lowered, self.solution, free, self.model, self.given, self.failures)
+            found = solution_notes(root, self.solution, free, self.model, self.given, self.failures)
         return found, self.drawn.everything() if self.is_solved else []
 
     def _strict(self, found: list[Diagnostic]) -> list[Diagnostic]:
@@ -395,13 +391,13 @@ class _Finish:
 
 
 def _drawn(
-    built: Model, lowered: Lowered, solution: Solution, freedom: Later[Freedom], watch: Stopwatch
+    built: Model, solution: Solved, freedom: Later[Freedom], watch: Stopwatch
 ) -> tuple[SolvedModel, Evaluator, Drawing, Findings, list[Diagnostic]]:
     """Returns the solved model, its evaluator and drawing, the findings on that, and assertions that fail."""
     from aidl_lang.explaining.outcome import assertion_notes
     from aidl_lang.geometry.picturing import pictured
 
-    model, evaluator, drawing, notes = pictured(built, lowered, solution, freedom, watch)
+    model, evaluator, drawing, notes = pictured(built, solution, freedom, watch)
     with watch("asserts"):
         found = assertion_notes(built, model, drawing, evaluator, solved_fully=model.status == "solved")
     return model, evaluator, drawing, notes, found

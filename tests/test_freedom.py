@@ -14,14 +14,14 @@ from hypothesis import strategies as st
 
 from aidl_lang import pipeline
 from aidl_lang.building.expression import DEGREE
-from aidl_lang.building.lower import Lowered, lower
+from aidl_lang.building.lower import Solved, lower
 from aidl_lang.building.model import Model
 from aidl_lang.common.source import SourceFile
 from aidl_lang.geometry.freedom import motions, report
 from aidl_lang.geometry.freedom.scene import Bending, Scene, X, Y
 from aidl_lang.geometry.solved import Motion, SolvedModel
 from aidl_lang.interp import interpret
-from aidl_lang.solver import Relation, Solution, Status, solve
+from aidl_lang.solver import Relation, Status, solve
 from aidl_lang.solver.analysis import Freedom, analyse
 from aidl_lang.solver.valuation import linearise
 from tests.amount import tries
@@ -37,16 +37,15 @@ class Analysed:
     def __init__(self, name: str, text: str) -> None:
         program, _ = pipeline.front(SourceFile(name, text))
         self.model: Model = interpret(program).model
-        self.lowered: Lowered = lower(self.model)
-        self.solution: Solution = solve(self.lowered.problem)
-        self.freedom: Freedom = analyse(self.lowered.problem, self.solution)
-        bending = Bending(self.lowered.problem, self.solution)
-        self.scene = Scene(self.model, self.lowered, self.freedom.motions, bending)
-        self.ways: tuple[Motion, ...] = motions(self.model, self.lowered, self.solution, self.freedom)
+        self.solution: Solved = solve(lower(self.model))
+        self.problem = self.solution.problem
+        self.freedom: Freedom = analyse(self.solution)
+        self.scene = Scene(self.model, self.problem, self.freedom.motions, Bending(self.solution))
+        self.ways: tuple[Motion, ...] = motions(self.model, self.solution, self.freedom)
 
     def rates(self, motion: Motion) -> np.ndarray:
         """How fast the unknowns change."""
-        number = {unknown.path: i for i, unknown in enumerate(self.lowered.unknowns)}
+        number = {unknown.path: i for i, unknown in enumerate(self.problem.unknowns)}
         way = np.zeros(len(number))
         for name, rate in motion.moves.items():
             way[number[name]] = rate
@@ -54,7 +53,7 @@ class Analysed:
 
     def velocity(self, motion: Motion) -> np.ndarray:
         """How fast the observables change, by finite differences."""
-        way, problem = self.rates(motion), self.lowered.problem
+        way, problem = self.rates(motion), self.problem
         step = STEP / np.abs(way).max()
         ahead, behind = (
             np.array([evaluate(problem, node, at) for _, node in problem.observables])
@@ -64,13 +63,13 @@ class Analysed:
 
     def equations(self) -> list[int]:
         """Every equation that holds."""
-        constraints = zip(self.lowered.problem.constraints, self.solution.satisfied, strict=True)
+        constraints = zip(self.problem.constraints, self.solution.satisfied, strict=True)
         held = (c for c, holds in constraints if c.weight is None and holds)
         return [row.expression for c in held for row in c.rows if row.relation is Relation.EQUAL]
 
     def residuals(self) -> list[tuple[float, float]]:
         """Of every equation that holds, a step along and a step against every motion."""
-        problem, at = self.lowered.problem, self.solution.values
+        problem, at = self.problem, self.solution.values
         ways = [self.rates(motion) for motion in self.ways]
         steps = [STEP * way / np.abs(way).max() for way in ways]
         pairs = [(node, step) for step in steps for node in self.equations()]
@@ -82,7 +81,7 @@ class Analysed:
         """How far the equations are from holding where the things of a motion have gone on as its words say,
         and what stays stays.
         """
-        problem, scene = self.lowered.problem, self.scene
+        problem, scene = self.problem, self.scene
         seen = np.flatnonzero(scene.anchor == 0)
         equal = self.equations()
         roots = np.array([*equal, *(problem.observables[o][1] for o in seen)], dtype=np.int64)

@@ -7,6 +7,8 @@ frame that no constraint mentions, an argument that was read while building, an 
 from __future__ import annotations
 
 from collections.abc import Hashable, Iterable, Iterator, Mapping, Sequence
+from functools import cache
+from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,9 +31,9 @@ from aidl_lang.building.values import Num, PointVal
 from aidl_lang.checking.units import ANGLE, LENGTH
 from aidl_lang.common.records import record
 from aidl_lang.solver import Constraint as SolverConstraint
-from aidl_lang.solver import Problem, Relation, Row
+from aidl_lang.solver import Problem, Relation, Row, Solution
 from aidl_lang.solver.expression import TapeBuilder
-from aidl_lang.solver.problem import constraint_arrays
+from aidl_lang.solver.problem import Floats, constraint_arrays
 
 _RADIAN = 180.0 / np.pi
 
@@ -43,74 +45,74 @@ LEAST_SHARE = 1e-3
 """The least part of a kept size that remains when it gives way: it may shrink, but not vanish."""
 
 
-@record()
-class Lowered:
-    """A problem for the solver with what its numbers stand for.
+@record(kw_only=True)
+class Lowered(Problem):
+    """A problem for the solver that knows what its numbers stand for.
 
-    unknowns  by their number in the problem
-    stated    for each constraint of the problem, the one of the model; None for those that come with the
+    unknowns  by their number
+    stated    for each constraint that was lowered, the one of the model; None for those that come with the
               nature of a size or a box (never negative)
-    groups    path of the structure that each group of the problem is
+    groups    path of the structure that each group is
     """
 
-    problem: Problem
     unknowns: tuple[Unknown, ...]
     stated: tuple[Constraint | None, ...]
     groups: tuple[str, ...]
+
+    def by_unknown(self, values: Floats) -> dict[Unknown, float]:
+        return dict(zip(self.unknowns, values.tolist(), strict=True))
+
+    def stated_at(self, numbers: Iterable[int]) -> list[Constraint]:
+        """Returns the constraints of the model behind those with some numbers."""
+        return [stated for number in numbers if (stated := self.stated[number]) is not None]
+
+    @property
+    def preference(self) -> list[int]:
+        """The constraints as conflicts take them for granted: unwritten ones first, then as written."""
+
+        def place(index: int) -> tuple[bool, str, int, int]:
+            if (stated := self.stated[index]) is None:
+                return (False, "", 0, index)
+            return (stated.wording is not None, stated.span.source.name, stated.span.start, index)
+
+        return sorted(range(len(self.stated)), key=place)
+
+
+Solved: TypeAlias = Solution[Lowered]
 
 
 def lower(model: Model) -> Lowered:
     return _Lowering(model).run()
 
 
-def preference(lowered: Lowered) -> list[int]:
-    """Returns the constraints as conflicts take them for granted: unwritten ones first, then as written."""
-
-    def place(index: int) -> tuple[bool, str, int, int]:
-        if (stated := lowered.stated[index]) is None:
-            return (False, "", 0, index)
-        return (stated.wording is not None, stated.span.source.name, stated.span.start, index)
-
-    return sorted(range(len(lowered.stated)), key=place)
-
-
 class _Lowering:
     def __init__(self, model: Model) -> None:
         self.model = model
-        self.structures = list(model.root.walk())
-        self.groups = {s: i for i, s in enumerate(self.structures)}
+        self.groups = {s: i for i, s in enumerate(model.root.walk())}
         self.tape = TapeBuilder()
         self.make = {op: getattr(self.tape, op) for op in ex.EVALUATE}
         self.node_of: dict[Expression, int] = {}
         self.numbers: dict[Unknown, int] = {}
         self.variables: dict[Structure, list[Unknown]] = {}
-        self.mentioned: set[Unknown] = set()
+        parts = (part for c in model.constraints for part in c.comparisons)
+        self.mentioned = set(ex.unknowns(side for part in parts for side in (part.left, part.right)))
         self.holders = {c.holder for c in model.constraints}
-        self.standing: dict[Structure, bool] = {}
-        self.named: dict[Constraint, tuple[set[Structure], set[Structure]]] = {}
+        self.named = {c: self._named(c) for c in model.constraints}
         self.named_things: dict[Structure, set[Hashable]] = {}
         # Every number that defines the drawing, by structure.
-        self.seen = {s: [at for _, _, at in seen(s)] for s in self.structures}
+        self.seen = {s: [at for _, _, at in seen(s)] for s in self.groups}
         self.size = _extent(self.seen, model.root)
 
     def run(self) -> Lowered:
         self._number_unknowns()
-        stated: list[Constraint | None] = []
-        constraints: list[SolverConstraint] = []
+        stated = [c for c in (*self.model.constraints, *self._bounds()) if c.holder in self.groups]
         # In an order of their own, so that the order of writing cannot show in the last digits.
-        for constraint in sorted(
-            [*self.model.constraints, *self._bounds()], key=lambda c: (c.text, c.label, c.span.start)
-        ):
-            if constraint.holder in self.groups:
-                constraints.append(self._constraint(constraint))
-                stated.append(constraint)
-        for never in self._never_vanishing():
-            constraints.append(never)
-            stated.append(None)
-        observables = tuple((self.groups[s], o) for s in self.structures for o in self._observables(s))
+        stated.sort(key=lambda c: (c.text, c.label, c.span.start))
+        constraints = [*map(self._constraint, stated), *self._never_vanishing()]
+        observables = tuple((self.groups[s], o) for s in self.groups for o in self._observables(s))
         found = tuple(self.numbers)
-        parents = [self.groups[s.parent] if s.parent else -1 for s in self.structures]
-        problem = Problem(
+        stands = cache(self._stands)
+        return Lowered(
             tape=self.tape.finish(),
             initial=np.array([u.guess for u in found], dtype=np.float64),
             scale=np.array([_RADIAN / self.size if u.angular else 1.0 for u in found], dtype=np.float64),
@@ -121,31 +123,30 @@ class _Lowering:
             ),
             axis=np.array([_axis(u) for u in found], dtype=np.intp),
             longest=np.array([_LONGEST_TURN if u.angular else np.inf for u in found], dtype=np.float64),
-            parent=np.array(parents, dtype=np.intp),
+            parent=np.array([self.groups[s.parent] if s.parent else -1 for s in self.groups], dtype=np.intp),
             **constraint_arrays(constraints),
             named=True,
-            standing=np.array([self._stands(u) for u in found], dtype=np.bool_),
+            standing=np.array([not u.angular and stands(u.frame_of) for u in found], dtype=np.bool_),
             spanned=np.array([_is_spanned(u) for u in found], dtype=np.bool_),
-            rigid=np.array([self._is_rigid(s) for s in self.structures], dtype=np.bool_),
+            rigid=np.array([self._is_rigid(s) for s in self.groups], dtype=np.bool_),
             sealed=np.array([self._sealed(u.owner) for u in found], dtype=np.intp),
             thing=_numbered(
                 (u.holder, u.field if u.kept and not _is_spanned(u) else u.field.rpartition(".")[0])
                 for u in found
             ),
-            clinging=frozenset(self.groups[s] for parent in self.structures for s in _clinging(parent)),
+            clinging=frozenset(self.groups[s] for parent in self.groups for s in _clinging(parent)),
             observables=observables,
             names=tuple(u.path for u in found),
+            unknowns=found,
+            stated=(*stated, *[None] * (len(constraints) - len(stated))),
+            groups=tuple(s.path for s in self.groups),
         )
-        return Lowered(problem, found, tuple(stated), tuple(s.path for s in self.structures))
 
     # --- Unknowns ------------------------------------------------------------------------------
 
     def _number_unknowns(self) -> None:
         """Numbers the unknowns that can move: the drawing's, and both coordinates of mentioned frames."""
-        parts = (part for c in self.model.constraints for part in c.comparisons)
-        mentioned = self.mentioned = set(ex.unknowns(e for part in parts for e in (part.left, part.right)))
-        drawn = {u for u in ex.unknowns(self._observed()) if u.frame_of is None}
-        self.named = {c: self._named(c) for c in self.model.constraints}
+        shown = self.mentioned.union(u for u in ex.unknowns(self._observed()) if u.frame_of is None)
         for constraint in self.model.constraints:
             if constraint.weight is None and not constraint.is_inherent:
                 self._name_things(constraint)
@@ -159,7 +160,7 @@ class _Lowering:
         }
         for unknown in self.model.unknowns:
             is_variable = _is_variable(unknown)
-            live = is_variable or unknown in mentioned or unknown in drawn or unknown.frame_of in named
+            live = is_variable or unknown in shown or unknown.frame_of in named
             if live and not unknown.exact and unknown.owner in self.groups:
                 self.numbers[unknown] = len(self.numbers)
                 if is_variable:
@@ -177,17 +178,14 @@ class _Lowering:
         """Returns the structure that an unknown moves as a whole; None for one of its contents."""
         return unknown.owner if self._is_outline(unknown) else unknown.frame_of
 
-    def _stands(self, unknown: Unknown) -> bool:
-        """Tells whether an unknown shifts a frame that lies on its parent's, with something in it at an exact
-        place: that is exact in the parent, too, as long as the frame stays. A frame turns only on request.
+    def _stands(self, s: Structure | None) -> bool:
+        """Tells whether a frame lies on its parent's, with something in it at an exact place: that is exact
+        in the parent, too, as long as the frame stays. It turns only on request.
         """
-        s = unknown.frame_of
-        if s is None or unknown.angular:
+        if s is None:
             return False
-        if s not in self.standing:
-            lies_on = s.frame.x.value == s.frame.y.value == s.frame.rotation.value == 0.0
-            self.standing[s] = lies_on and any(map(_is_exact, self.seen[s]))
-        return self.standing[s]
+        lies_on = s.frame.x.value == s.frame.y.value == s.frame.rotation.value == 0.0
+        return lies_on and any(map(_is_exact, self.seen[s]))
 
     def _sealed(self, s: Structure) -> int:
         """Returns the depth of the innermost `@rigid` structure around this; 0 for none, -1 for the root."""
@@ -255,7 +253,7 @@ class _Lowering:
     def _constraint(self, constraint: Constraint) -> SolverConstraint:
         rows = tuple(self._row(c) for c in constraint.comparisons)
         placed = {u for c in constraint.comparisons for u in c.placed}
-        named = self.named[constraint] if constraint in self.named else self._named(constraint)
+        named = self.named.get(constraint, ((), ()))
         whole, inside = (frozenset(self.groups[s] for s in each if s in self.groups) for each in named)
         numbers = frozenset(self.numbers[u] for u in placed if u in self.numbers)
         return SolverConstraint(

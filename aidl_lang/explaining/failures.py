@@ -11,7 +11,7 @@ from dataclasses import replace
 from functools import cached_property
 
 from aidl_lang.building.expression import Evaluator, Unknown, unknowns
-from aidl_lang.building.lower import Lowered, lower
+from aidl_lang.building.lower import Solved, lower
 from aidl_lang.building.model import Constraint, Model, chain
 from aidl_lang.building.values import Num
 from aidl_lang.building.wording import Wording, rounding
@@ -26,7 +26,7 @@ from aidl_lang.interp import Interpretation
 from aidl_lang.solver import Settings, Status, solve
 from aidl_lang.solver.conflicts import nearby_solution
 from aidl_lang.solver.newton import Clock
-from aidl_lang.solver.problem import Failure, GroupFailure, Member, Solution
+from aidl_lang.solver.problem import Failure, GroupFailure, Member
 from aidl_lang.syntax import ast
 
 _PROVEN = (Failure.CONTRADICTORY, Failure.OVERDETERMINED)
@@ -45,7 +45,7 @@ def explained(trials: Trials) -> list[Explanation]:
     """Returns an explanation of each group that failed by itself; `trials` tries remedies once asked."""
     failures, found = trials.solution.failures, list[Explanation]()
     for failure in failures:
-        if not _follows(failure, failures, trials.lowered.groups):
+        if not _follows(failure, failures, trials.solution.problem.groups):
             found.append(Explanation(failure, trials, tuple(found)))
     return found
 
@@ -112,8 +112,8 @@ class Explanation:
     earlier: tuple[Explanation, ...]
 
     def __post_init__(self) -> None:
-        failure, lowered = self.failure, self.trials.lowered
-        self.lowered, self.solution = lowered, self.trials.solution
+        failure, self.solution = self.failure, self.trials.solution
+        lowered = self.lowered = self.solution.problem
         self.is_proven = failure.reason in _PROVEN
         self.times = Counter(c.span for c in lowered.stated if c is not None)
         self.sizes = [self._size(i) for i in failure.conflict if lowered.stated[i] is None]
@@ -159,9 +159,8 @@ class Explanation:
 
     def _size(self, index: int) -> Unknown:
         """Returns the size that an unwritten constraint, `least - size <= 0`, keeps from vanishing."""
-        problem = self.lowered.problem
-        operands = problem.tape.operand_lists
-        *_, size = operands[problem.constraints[index].rows[0].expression]
+        operands = self.lowered.tape.operand_lists
+        *_, size = operands[self.lowered.constraints[index].rows[0].expression]
         return self.lowered.unknowns[operands[size][0]]
 
     # -- remedies
@@ -303,7 +302,7 @@ class Explanation:
     @cached_property
     def _others(self) -> list[set[Span]]:
         others = [f for f in self.solution.failures if f is not self.failure]
-        return [{c.span for i in f.conflict if (c := self.lowered.stated[i]) is not None} for f in others]
+        return [{c.span for c in self.lowered.stated_at(f.conflict)} for f in others]
 
     @cached_property
     def _chief(self) -> _StatedMember:
@@ -462,50 +461,48 @@ class Rereading:
     """A program that solved with ambiguous calls read differently; `calls` are their places and readings."""
 
     built: Interpretation
-    lowered: Lowered
-    solution: Solution
+    solution: Solved
     calls: tuple[tuple[Span, str], ...]
 
 
 def reread(
     built: Interpretation,
-    lowered: Lowered,
-    solution: Solution,
+    solution: Solved,
     again: Callable[[Mapping[int, int]], Interpretation | None],
     settings: Settings,
-) -> tuple[Rereading | None, Solution]:
+) -> tuple[Rereading | None, Solved]:
     """Returns the program with ambiguous calls read so that it solves and nothing dear gives way (None if it
     does so as it is, or no such reading was found), and the solution as it is: a conflict of such calls is no
     contradiction in it unless every reading was tried.
     """
     readings = list(built.model.readings)
-    troubled = _troubled(lowered, solution) if readings and settings.explain else ()
+    troubled = _troubled(solution) if readings and settings.explain else ()
     if not troubled:
         return None, solution
     clock, seen = Clock(_SECONDS), [readings]
     quick = replace(settings, explain=False, seconds=min(settings.seconds, _LONGEST))
-    near = _numbers(readings, lowered, troubled)
-    far = _numbers(readings, lowered, {i for failure in solution.failures for i in failure.within})
+    near = _numbers(readings, solution, troubled)
+    far = _numbers(readings, solution, {i for failure in solution.failures for i in failure.within})
     for turned in _ways([*near, *(n for n in far if n not in near)]):
         if clock.expired or len(seen) > _MOST:
-            return None, _undecided(lowered, solution, readings)
+            return None, _undecided(solution, readings)
         other = again(turned)
         if other is None or (taken := list(other.model.readings)) in seen:
             continue
         seen.append(taken)
         made = lower(other.model)
         places = ((f.conflict, dict(f.nearest)) for f in solution.failures)  # by number, the same as before
-        if any(nearby_solution(made.problem, quick, *place) is None for place in places):
+        if any(nearby_solution(made, quick, *place) is None for place in places):
             continue  # which is known sooner than by solving
-        found = solve(made.problem, quick)
+        found = solve(made, quick)
         if found.status is Status.SOLVED and not any(stage.concession for stage in found.stages):
             calls = tuple(taken[n] for n in turned if n < len(taken))
-            return Rereading(other, made, found, calls), solution
+            return Rereading(other, found, calls), solution
     return None, solution
 
 
-def _numbers(readings: Sequence[tuple[Span, str]], lowered: Lowered, indices: Iterable[int]) -> list[int]:
-    spans = {c.span for i in indices if (c := lowered.stated[i]) is not None}
+def _numbers(readings: Sequence[tuple[Span, str]], solution: Solved, indices: Iterable[int]) -> list[int]:
+    spans = {c.span for c in solution.problem.stated_at(indices)}
     return [n for n, (span, _) in enumerate(readings) if any(map(span.overlaps, spans))]
 
 
@@ -517,22 +514,22 @@ def _ways(numbers: Sequence[int]) -> Iterator[dict[int, int]]:
                 yield dict(zip(chosen, ranks, strict=True))
 
 
-def _undecided(lowered: Lowered, solution: Solution, readings: Sequence[tuple[Span, str]]) -> Solution:
+def _undecided(solution: Solved, readings: Sequence[tuple[Span, str]]) -> Solved:
     """Returns the solution with failures that ambiguous calls have a share in no longer counted as proven."""
     failures = tuple(
-        replace(f, reason=Failure.NOT_CONVERGED) if _numbers(readings, lowered, f.conflict) else f
+        replace(f, reason=Failure.NOT_CONVERGED) if _numbers(readings, solution, f.conflict) else f
         for f in solution.failures
     )
     return replace(solution, failures=failures)
 
 
-def _troubled(lowered: Lowered, solution: Solution) -> Collection[int]:
+def _troubled(solution: Solved) -> Collection[int]:
     """Returns the constraints that take part in a failure, or that made a size change much."""
-    found = {i for failure in solution.failures for i in failure.conflict}
+    problem, found = solution.problem, {i for failure in solution.failures for i in failure.conflict}
     for stage in solution.stages:
         for unknown in stage.concession.unknowns if stage.concession is not None else ():
-            was, now = lowered.problem.initial[unknown], solution.values[unknown]
-            if lowered.problem.kept[unknown] and abs(now - was) > _MUCH * abs(was):
+            was, now = problem.initial[unknown], solution.values[unknown]
+            if problem.kept[unknown] and abs(now - was) > _MUCH * abs(was):
                 assert stage.concession is not None
                 found.update(stage.concession.constraints)
     return found
@@ -540,12 +537,12 @@ def _troubled(lowered: Lowered, solution: Solution) -> Collection[int]:
 
 def elsewhere_notes(model: Model, other: Rereading | None, trials: Trials) -> Iterator[Diagnostic]:
     """Yields notes, with fitting first guesses, on calls read differently and on places found far off."""
-    lowered, solution = trials.lowered, trials.solution
+    solution = trials.solution
     if solution.status is not Status.SOLVED:
         return
     if other is not None:
         spans = [span for span, _ in other.calls]
-        moved = [c for c in lowered.stated if c is not None and any(map(c.span.overlaps, spans))]
+        moved = [c for c in solution.problem.stated if c is not None and any(map(c.span.overlaps, spans))]
         names = listed(ticked(span.one_line for span in spans), NAMED)
         are = "are" if len(spans) > 1 else "is"
         message = f"{names} {are} not taken as the first guesses have it, for which no position was found"
@@ -554,8 +551,7 @@ def elsewhere_notes(model: Model, other: Rereading | None, trials: Trials) -> It
         fix = _guesses(model, moved, trials)
         yield Diagnostic("N0604", message, first, label, labels, (_LOOK,), fix)
     for stage in solution.stages:
-        despite = [c for i in stage.despite if (c := lowered.stated[i]) is not None]
-        if despite:
+        if despite := solution.problem.stated_at(stage.despite):
             names = named((c.text for c in despite), NAMED)
             hold = "hold" if len(despite) > 1 else "holds"
             first, *rest = dict.fromkeys(c.span for c in despite)
@@ -567,9 +563,8 @@ def elsewhere_notes(model: Model, other: Rereading | None, trials: Trials) -> It
 
 def _guesses(model: Model, stated: Sequence[Constraint], trials: Trials) -> Fix | None:
     """Returns a fix that writes first guesses from which the program solves as written; or None."""
-    lowered, solution = trials.lowered, trials.solution
-    places = dict(zip(lowered.unknowns, solution.values.tolist(), strict=True))
-    was = dict(zip(lowered.unknowns, lowered.problem.initial.tolist(), strict=True))
+    lowered = trials.solution.problem
+    places, was = map(lowered.by_unknown, (trials.solution.values, lowered.initial))
     mentioned = set(unknowns(e for c in stated for part in c.comparisons for e in (part.left, part.right)))
     everything = {u for u in places if abs(places[u] - was[u]) > _STILL}
     evaluate = Evaluator(places)

@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from aidl_lang.building.expression import Unknown
-from aidl_lang.building.lower import Lowered
+from aidl_lang.building.lower import Lowered, Solved
 from aidl_lang.building.model import Constraint, Structure, told
 from aidl_lang.common.diagnostics import Diagnostic, Fix, Label
 from aidl_lang.common.prose import listed, short
@@ -19,7 +19,7 @@ from aidl_lang.explaining.failures import NAMED
 from aidl_lang.explaining.remedies import left_out
 from aidl_lang.geometry.solved import Change, SolvedModel
 from aidl_lang.solver import Constraint as SolverConstraint
-from aidl_lang.solver import Problem, Relation, Settings, Solution, Status, solve
+from aidl_lang.solver import Relation, Settings, Status, solve
 from aidl_lang.solver.analysis import Freedom, analyse
 from aidl_lang.solver.conflicts import Reason, reasons
 from aidl_lang.solver.dependence import Redundancy
@@ -44,15 +44,15 @@ class GaveWay:
     minimal: bool
 
 
-def gave_way(lowered: Lowered, solution: Solution, settings: Settings) -> tuple[GaveWay, ...]:
+def gave_way(solution: Solved, settings: Settings) -> tuple[GaveWay, ...]:
     """Returns what gave way in a solution, by reason."""
     found, seen = list[GaveWay](), set[int]()
     for stage in reversed(solution.stages):
         if (concession := stage.concession) is None:
             continue
         together: dict[tuple[Constraint, ...], GaveWay] = {}
-        for reason in reasons(lowered.problem, settings, concession, solution.values):
-            one = _given(lowered, solution, reason, seen)
+        for reason in reasons(solution.problem, settings, concession, solution.values):
+            one = _given(solution, reason, seen)
             seen |= reason.unknowns
             if one.moved:
                 # A constraint inherent in a shape is reported with the author's constraints on that shape.
@@ -64,14 +64,13 @@ def gave_way(lowered: Lowered, solution: Solution, settings: Settings) -> tuple[
     return tuple(reversed(found))
 
 
-def _given(lowered: Lowered, solution: Solution, reason: Reason, seen: Container[int]) -> GaveWay:
-    moved = {}
+def _given(solution: Solved, reason: Reason, seen: Container[int]) -> GaveWay:
+    lowered, moved = solution.problem, dict[Unknown, tuple[float, float]]()
     for index in sorted(reason.unknowns):
-        before, now = float(lowered.problem.initial[index]), float(solution.values[index])
+        before, now = float(lowered.initial[index]), float(solution.values[index])
         if index not in seen and abs(now - before) > _STILL:
             moved[lowered.unknowns[index]] = before, now
-    stated = [c for i in reason.constraints if (c := lowered.stated[i]) is not None]
-    stated.sort(key=lambda c: c.span.start)
+    stated = sorted(lowered.stated_at(reason.constraints), key=lambda c: c.span.start)
     return GaveWay(moved, tuple(stated), reason.minimal)
 
 
@@ -228,14 +227,15 @@ _TRIED = 20  # the most inequalities that are tried so, one by one
 _SECONDS = 1.0  # time for each of them
 
 
-def repetition_notes(lowered: Lowered, solution: Solution, freedom: Freedom) -> list[Diagnostic]:
+def repetition_notes(solution: Solved, freedom: Freedom) -> list[Diagnostic]:
     """Returns a note for each written constraint that follows from others, and each undecided part."""
+    lowered = solution.problem
     redundant = [(f, stated) for f in freedom.redundant if (stated := _stated(lowered, f.constraint))]
     times = Counter(stated.span for stated in lowered.stated if stated is not None)
     # What a loop or a template states may follow in one turn only.
     single = [(f, c) for f, c in redundant if c.node is not None and not c.label and times[c.span] == 1]
     can_go = [f.constraint for f, _ in single]
-    if not _changes_nothing(lowered, solution, can_go):
+    if not _changes_nothing(solution, can_go):
         can_go = []
     notes = [_note(lowered, f, stated, f.constraint in can_go) for f, stated in redundant]
     return [*notes, *_undecided(lowered, freedom)]
@@ -247,7 +247,7 @@ def _stated(lowered: Lowered, index: int) -> Constraint | None:
 
 
 def _note(lowered: Lowered, found: Redundancy, stated: Constraint, can_go: bool) -> Diagnostic:
-    others = [other for i in found.follows_from if (other := lowered.stated[i]) is not None]
+    others = lowered.stated_at(found.follows_from)
     names = list(dict.fromkeys(told(other) for other in others))
     reason = listed(names, _NAMED) or "the other constraints"
     labels = dict.fromkeys(Label(other.span, "from this") for other in others if other.span != stated.span)
@@ -257,9 +257,9 @@ def _note(lowered: Lowered, found: Redundancy, stated: Constraint, can_go: bool)
     return Diagnostic("N0602", message, stated.span, "says nothing new", tuple(labels), fix=fix)
 
 
-def _changes_nothing(lowered: Lowered, solution: Solution, left_out: Sequence[int]) -> bool:
+def _changes_nothing(solution: Solved, left_out: Sequence[int]) -> bool:
     """Tells whether the solution is the same without these constraints: they may decide what moves first."""
-    problem = lowered.problem
+    problem = solution.problem
     if not left_out or len(problem.initial) > _LARGEST:
         return False
     others = [c for i, c in enumerate(problem.constraints) if i not in set(left_out)]
@@ -282,31 +282,28 @@ def _undecided(lowered: Lowered, freedom: Freedom) -> Iterator[Diagnostic]:
         yield Diagnostic("N0603", message, first.span, "this is the first of them")
 
 
-def follows(lowered: Lowered, solution: Solution, span: Span) -> bool:
+def follows(solution: Solved, span: Span) -> bool:
     """Tells whether the statement at a place of a solved model holds wherever the other constraints hold: an
     equation near by and with sizes kept, as degrees of freedom are counted; an inequality everywhere. Returns
     False as well if that is too costly to decide.
     """
-    problem = lowered.problem
-    own = {i for i, stated in enumerate(lowered.stated) if stated is not None and stated.span.overlaps(span)}
+    problem = solution.problem
+    own = {i for i, stated in enumerate(problem.stated) if stated is not None and stated.span.overlaps(span)}
     hard = [(i, c) for i, c in enumerate(problem.constraints) if c.weight is None or i in own]
     others = [c for i, c in hard if i not in own]
     rows = [replace(c, rows=(row,), weight=None) for i, c in hard if i in own for row in c.rows]
     equations = [c for c in rows if c.rows[0].relation is Relation.EQUAL]
     inequalities = [c for c in rows if c.rows[0].relation is Relation.AT_MOST]
-    if len(inequalities) > _TRIED or not _are_redundant(problem, solution, others, equations):
+    if len(inequalities) > _TRIED or not _are_redundant(solution, others, equations):
         return False
-    return not any(_can_be_broken(problem, solution, [*others, *equations], c) for c in inequalities)
+    return not any(_can_be_broken(solution, [*others, *equations], c) for c in inequalities)
 
 
 def _are_redundant(
-    problem: Problem,
-    solution: Solution,
-    others: Sequence[SolverConstraint],
-    equations: Sequence[SolverConstraint],
+    solution: Solved, others: Sequence[SolverConstraint], equations: Sequence[SolverConstraint]
 ) -> bool:
     """Tells whether equations follow from others while sizes are kept."""
-    tape = problem.tape
+    problem, tape = solution.problem, solution.problem.tape
     is_size = tape.ops == Op.UNKNOWN
     is_size[is_size] = problem.kept[tape.operands[is_size, 0]]
     sizes = np.flatnonzero(is_size)
@@ -317,15 +314,15 @@ def _are_redundant(
     moving = [c for c in equations if mentioned(fixed, [c.rows[0].expression])]
     known = replace(problem, tape=fixed).with_constraints([*others, *moving])
     count = len(others) + len(moving)
-    found = analyse(known, replace(solution, satisfied=(True,) * count)).redundant if moving else ()
+    found = analyse(replace(solution, problem=known, satisfied=(True,) * count)).redundant if moving else ()
     return {each.constraint for each in found} >= set(range(len(others), count))
 
 
 def _can_be_broken(
-    problem: Problem, solution: Solution, others: Sequence[SolverConstraint], inequality: SolverConstraint
+    solution: Solved, others: Sequence[SolverConstraint], inequality: SolverConstraint
 ) -> bool:
     """Tells whether the others hold where an inequality does not; True as well if the time runs out."""
-    (row,), tape = inequality.rows, problem.tape
+    (row,), problem, tape = inequality.rows, solution.problem, solution.problem.tape
     node, level = len(tape), tape.levels[row.expression] + 1
     longer = replace(  # by a difference that is at most zero where the inequality is off
         tape,

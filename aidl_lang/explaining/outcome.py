@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from aidl_lang.building.boxes import SIDES, box_of, constrain_sources, source_unknowns
 from aidl_lang.building.expression import Evaluator, Expression, Unknown, nodes
-from aidl_lang.building.lower import Lowered
+from aidl_lang.building.lower import Lowered, Solved
 from aidl_lang.building.model import (
     Assertion,
     Comparison,
@@ -34,7 +34,7 @@ from aidl_lang.geometry.drawing import Drawing, all_geometry, region_alone
 from aidl_lang.geometry.region import Region
 from aidl_lang.geometry.solved import SolvedModel, SolvedStructure
 from aidl_lang.solver import Settings
-from aidl_lang.solver.problem import Solution, Status
+from aidl_lang.solver.problem import Status
 from aidl_lang.syntax import ast
 
 if TYPE_CHECKING:
@@ -49,8 +49,7 @@ _WORD = "assert"
 
 def solution_notes(
     root: Structure,
-    lowered: Lowered,
-    solution: Solution,
+    solution: Solved,
     freedom: Freedom,
     model: SolvedModel,
     given: Sequence[GaveWay],
@@ -64,17 +63,18 @@ def solution_notes(
         from aidl_lang.explaining.giving import giving_notes
 
         found += giving_notes(given, model)
-    found += leaving_notes(root, lowered, solution)
-    found += _wishes(lowered, solution)
+    found += leaving_notes(root, solution)
+    found += _wishes(solution)
     if freedom.redundant or freedom.undecided or freedom.unclear:
         from aidl_lang.explaining.giving import repetition_notes
 
-        found += repetition_notes(lowered, solution, freedom)
+        found += repetition_notes(solution, freedom)
     return found
 
 
-def _wishes(lowered: Lowered, solution: Solution) -> Iterator[Diagnostic]:
-    for stated, off, is_met in zip(lowered.stated, solution.residuals, solution.satisfied, strict=True):
+def _wishes(solution: Solved) -> Iterator[Diagnostic]:
+    rows = zip(solution.problem.stated, solution.residuals, solution.satisfied, strict=True)
+    for stated, off, is_met in rows:
         if stated is None or stated.weight is None or is_met:
             continue
         from aidl_lang.explaining.failures import measured_in
@@ -498,12 +498,12 @@ class _Detail:
         return is_drawn and not self.constraints and self.moved <= _STILL
 
 
-def leaving_notes(root: Structure, lowered: Lowered, solution: Solution) -> Iterator[Diagnostic]:
+def leaving_notes(root: Structure, solution: Solved) -> Iterator[Diagnostic]:
     """Yields a warning for each structure of which a part was taken away from the rest by constraints that a
     structure around it holds, and for what else was left behind.
     """
-    written = dict(zip(lowered.unknowns, map(float, lowered.problem.initial), strict=True))
-    solved = dict(zip(lowered.unknowns, map(float, solution.values), strict=True))
+    lowered = solution.problem
+    written, solved = map(lowered.by_unknown, (lowered.initial, solution.values))
     naming: dict[Unknown | Structure, list[Constraint]] = {}
     for stated in filter(None, lowered.stated):
         for comparison in stated.comparisons:
@@ -536,14 +536,13 @@ def _fits(structure: Structure, lowered: Lowered) -> bool:
     """Tells whether a place is found for a structure as a whole, with all other positions free."""
     from aidl_lang.solver.conflicts import nearby_solution
 
-    problem = lowered.problem
     start = {
-        index: float(problem.initial[index])
+        index: float(lowered.initial[index])
         for index, unknown in enumerate(lowered.unknowns)
         if unknown.frame_of is structure or not (unknown.kept or unknown.owner.is_within(structure))
     }
-    hard = [index for index, weight in enumerate(problem.weight.tolist()) if weight != weight]
-    return nearby_solution(problem, Settings(seconds=_SECONDS), hard, start) is not None
+    hard = [index for index, weight in enumerate(lowered.weight.tolist()) if weight != weight]
+    return nearby_solution(lowered, Settings(seconds=_SECONDS), hard, start) is not None
 
 
 def _extent(unknowns: Sequence[Unknown], written: Mapping[Unknown, float]) -> float:

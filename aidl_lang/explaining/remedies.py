@@ -11,14 +11,13 @@ from functools import cached_property
 
 import numpy as np
 
-from aidl_lang.building.lower import Lowered
+from aidl_lang.building.lower import Solved
 from aidl_lang.building.model import Constraint
 from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix, Label
 from aidl_lang.common.prose import short
 from aidl_lang.common.records import record
 from aidl_lang.common.source import Span
 from aidl_lang.explaining.trials import Dial, Trials, exact_numbers, mends, written_numbers
-from aidl_lang.solver import Solution
 from aidl_lang.solver.problem import Failure, GroupFailure, Member
 
 # --- Numbers that would make constraints hold which conflict, and the edits that write them.
@@ -438,13 +437,13 @@ _MOST = 0.5  # greatest relative change of a number that is offered as a fix: a 
 _PLACES = 5  # the most places that a message shows beside its own
 
 
-def with_failing_constants(lowered: Lowered, solution: Solution) -> Solution:
+def with_failing_constants(solution: Solved) -> Solved:
     """Returns the solution of a problem that states constants, each that does not hold being a failure."""
     found = []
-    for index, stated in enumerate(lowered.stated):
+    for index, stated in enumerate(solution.problem.stated):
         sides = (side for part in stated.comparisons for side in (part.left, part.right)) if stated else ()
         if stated and not solution.satisfied[index] and all(side.is_constant for side in sides):
-            group, member = int(lowered.problem.holder[index]), Member(index, solution.residuals[index])
+            group, member = int(solution.problem.holder[index]), Member(index, solution.residuals[index])
             found.append(GroupFailure(group, Failure.CONTRADICTORY, (member,), minimal=True, within=(index,)))
     return replace(solution, failures=tuple(found))
 
@@ -458,7 +457,7 @@ def with_remedies(
     """
     failures: dict[Span, tuple[Constraint, GroupFailure]] = {}
     for failure in trials.solution.failures:
-        if (stated := trials.lowered.stated[failure.conflict[0]]) is not None:
+        if (stated := trials.solution.problem.stated[failure.conflict[0]]) is not None:
             failures.setdefault(stated.span, (stated, failure))
     return [
         _answered(d, *failures[d.span], everything, trials)

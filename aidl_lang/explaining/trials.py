@@ -13,14 +13,14 @@ from functools import cached_property
 
 import numpy as np
 
-from aidl_lang.building.lower import Lowered
+from aidl_lang.building.lower import Lowered, Solved
 from aidl_lang.building.model import is_size
 from aidl_lang.checking.symbols import Symbol, SymbolKind
 from aidl_lang.common.diagnostics import Diagnostic, Edit, Fix, apply_fixes, has_errors
 from aidl_lang.common.names import fold
 from aidl_lang.common.records import record
 from aidl_lang.common.source import SourceFile, Span
-from aidl_lang.solver import Settings, Solution, solve
+from aidl_lang.solver import Settings, solve
 from aidl_lang.solver.conflicts import equations, nearby_solution, residual, shortfall
 from aidl_lang.solver.expression import Floats
 from aidl_lang.solver.newton import Clock
@@ -178,14 +178,13 @@ class Trials:
     source   the program as it is
     build    returns the problem of another text; None if that has errors
     compile  returns the diagnostics of another text
-    lowered  the problem of the program as it is; `solution` is its solution
+    solution the solution of the program as it is
     """
 
     source: SourceFile
     build: Callable[[SourceFile], Lowered | None]
     compile: Callable[[SourceFile], Sequence[Diagnostic]]
-    lowered: Lowered
-    solution: Solution
+    solution: Solved
     settings: Settings
     cut_short: set[tuple[int, ...]] = field(default_factory=set)
     """The conflicts for which numbers were left untried, for want of time."""
@@ -232,14 +231,14 @@ class Trials:
         start = {numbered[u]: value for u, value in self._free(failure).items()}
         members = [matched[index] for index in failure.conflict]
         within = [matched[index] for index in self._together(failure)]
-        off = shortfall(other.problem, self._quick, members, within, start)
+        off = shortfall(other, self._quick, members, within, start)
         self._lacks[id(other), failure.conflict] = off
         return off
 
     def _together(self, failure: GroupFailure) -> list[int]:
         """Returns the constraints that took part in the search, without those of other failures."""
         others = self._others(failure)
-        hard = np.isnan(self.lowered.problem.weight)
+        hard = np.isnan(self.solution.problem.weight)
         return [i for i in failure.within if hard[i] and i not in others]
 
     def _others(self, failure: GroupFailure) -> set[int]:
@@ -254,7 +253,7 @@ class Trials:
             return None
         other, matched, numbered = found
         there = {numbered[u]: value for u, value in place.items()}
-        return residual(other.problem, self._quick, matched[member], there)
+        return residual(other, self._quick, matched[member], there)
 
     def lies_flat(self, edits: Sequence[Edit], further: Sequence[Edit], failure: GroupFailure) -> bool:
         """Tells whether the constraints of a failure hold after edits only where several that turn with the
@@ -268,14 +267,13 @@ class Trials:
             other, matched, numbered = found
             members = [matched[index] for index in failure.conflict]
             start = {numbered[u]: value for u, value in self._free(failure).items()}
-            if (place := nearby_solution(other.problem, self._quick, members, start)) is None:
+            if (place := nearby_solution(other, self._quick, members, start)) is None:
                 return False
-            slopes.append(equations(other.problem, self._quick, members, place))
-        turning = [
-            stated
-            for index, a, b in zip(failure.conflict, *slopes, strict=True)
-            if (stated := self.lowered.stated[index]) is not None and np.abs(a - b).max(initial=0.0) > _TURNS
-        ]
+            slopes.append(equations(other, self._quick, members, place))
+        turned = zip(failure.conflict, *slopes, strict=True)
+        turning = self.solution.problem.stated_at(
+            index for index, a, b in turned if np.abs(a - b).max(initial=0.0) > _TURNS
+        )
         flat, free = (np.linalg.matrix_rank(np.vstack(each), _FLAT) for each in slopes)
         return bool(flat < free) and sum(not stated.is_inherent for stated in turning) > 1
 
@@ -283,12 +281,12 @@ class Trials:
         key = failure.conflict, member
         if key not in self._places:
             rest = [index for index in self._together(failure) if index != member]
-            self._places[key] = nearby_solution(self.lowered.problem, self._quick, rest, self._free(failure))
+            self._places[key] = nearby_solution(self.solution.problem, self._quick, rest, self._free(failure))
         return self._places[key]
 
     def _free(self, failure: GroupFailure) -> dict[int, float]:
         """Returns the unknowns that may move if nothing gives way, with their values at the nearest place."""
-        unknowns = self.lowered.unknowns
+        unknowns = self.solution.problem.unknowns
         return {
             u: value
             for u, value in failure.nearest
@@ -301,9 +299,9 @@ class Trials:
         """Returns the edited problem, its constraints and unknowns by number; None for another kind."""
         if self.is_over or (other := self._with(edits)) is None:
             return None
-        if (matched := _matched(self.lowered, other)) is None:
+        if (matched := _matched(self.solution.problem, other)) is None:
             return None
-        names, keys = {key: u for u, key in enumerate(_keys(other))}, _keys(self.lowered)
+        names, keys = {key: u for u, key in enumerate(_keys(other))}, _keys(self.solution.problem)
         numbered = {u: names[keys[u]] for u, _ in failure.nearest if keys[u] in names}
         return (other, matched, numbered) if len(numbered) == len(failure.nearest) else None
 
@@ -319,27 +317,27 @@ class Trials:
         return self._mended[key]
 
     def _is_mended(self, failure: GroupFailure, other: Lowered) -> bool:
-        problem = other.problem
+        own, problem = self.solution.problem, other
         if others := self._others(failure):
             # What is stated at one place for several things is judged for all of them.
-            places = [None if c is None else c.span for c in self.lowered.stated]
+            places = [None if c is None else c.span for c in own.stated]
             judged = {None, *(places[i] for i in failure.conflict)}
-            matched = _matched(self.lowered, other) or _by_text(self.lowered, other)
+            matched = _matched(own, other) or _by_text(own, other)
             apart = {matched[i] for i in others if i in matched and places[i] not in judged}
             left = [c for i, c in enumerate(problem.constraints) if i not in apart]
             problem = problem.with_constraints(left)
         found = solve(problem, self._quick)
         if not np.all(np.asarray(found.satisfied)[np.isnan(problem.weight)]):
             return False
-        asked = {self.lowered.problem.names[u] for u in failure.sizes}
-        return _gave_way(other, found) <= _gave_way(self.lowered, self.solution) | asked
+        asked = {own.names[u] for u in failure.sizes}
+        return _gave_way(found) <= _gave_way(self.solution) | asked
 
     def holds(self, edits: Sequence[Edit], failure: GroupFailure) -> bool:
         """Tells whether the constraints of a failure hold after the edits, whatever gives way for it."""
         if self.is_over or (other := self._with(edits)) is None:
             return False
-        matched = _matched(self.lowered, other) or {}
-        found = solve(other.problem, self._quick).satisfied if matched else ()
+        matched = _matched(self.solution.problem, other) or {}
+        found = solve(other, self._quick).satisfied if matched else ()
         return bool(found) and all(found[matched[i]] for i in failure.conflict)
 
     def finishes(self, edits: Sequence[Edit]) -> bool:
@@ -418,16 +416,17 @@ def _keys(lowered: Lowered) -> list[tuple[str, int]]:
     """Returns a key that each unknown keeps: its path, and how many before it have that path."""
     met: Counter[str] = Counter()
     found = []
-    for path in lowered.problem.names:
+    for path in lowered.names:
         found.append((path, met[path]))
         met[path] += 1
     return found
 
 
-def _gave_way(lowered: Lowered, solution: Solution) -> set[str]:
-    moved = np.abs(solution.values - lowered.problem.initial) > _MOVED
+def _gave_way(solution: Solved) -> set[str]:
+    lowered = solution.problem
+    moved = np.abs(solution.values - lowered.initial) > _MOVED
     gave = {u for stage in solution.stages if stage.concession is not None for u in stage.concession.unknowns}
-    return {lowered.problem.names[u] for u in gave if moved[u] and not lowered.unknowns[u].implied}
+    return {lowered.names[u] for u in gave if moved[u] and not lowered.unknowns[u].implied}
 
 
 # --- Verifies the fixes of findings made after solving: one that does not resolve its finding is not

@@ -7,7 +7,6 @@ from collections import defaultdict
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import field, replace
 from itertools import count
-from typing import TypeVar
 
 from aidl_lang.common.diagnostics import Diagnostic, Label
 from aidl_lang.common.prose import counted, named
@@ -16,10 +15,8 @@ from aidl_lang.geometry.curves import Arc, Bezier, Line, Piece, Vec, in_runs, la
 from aidl_lang.geometry.faces import WINDING, OwnFace, Shape, own_faces, union_of
 from aidl_lang.geometry.intersect import near_pairs
 from aidl_lang.geometry.network import Network, with_finer_chords
-from aidl_lang.geometry.sections import Section, Traced, trace_all, union
+from aidl_lang.geometry.sections import Section, traced, union
 from aidl_lang.geometry.solved import SolvedGeometry, SolvedStructure, at, edges_of
-
-T = TypeVar("T")
 
 # --- What structures are clipped to, in the network of curves: solids and holes lie inside of it.
 
@@ -147,8 +144,9 @@ Finding = Covered | LooseCurves | Diagnostic
 @record(frozen=False)
 class Bodies:
     """The state of the walk and its result; `sections` has each structure that has material or cuts, `faces`
-    what each draws itself. `clips`: for each structure that is clipped, what it may lie in. `blind`: the
-    holes that end in their solid, which stays whole as seen from above.
+    what each draws itself, `bodies` what is left of material in the end. `clips`: for each structure that is
+    clipped, what it may lie in. `blind`: the holes that end in their solid, which stays whole as seen from
+    above.
     """
 
     network: Network
@@ -158,6 +156,7 @@ class Bodies:
     sections: dict[str, Section] = field(default_factory=dict)
     faces: dict[str, list[OwnFace]] = field(default_factory=dict)
     findings: list[Finding] = field(default_factory=list)
+    bodies: list[Mass] = field(default_factory=list)
 
     def masses(self, structure: SolvedStructure) -> list[Mass]:
         """Returns the material of a structure that is not a hole."""
@@ -414,40 +413,33 @@ def _filled_hole(
 # nothing in cutting formats.
 
 
-def visible_seams(
-    network: Network, mass: Mass, traced: Mapping[str, Traced]
-) -> Iterator[tuple[str, tuple[Piece, ...]]]:
+def visible_seams(walk: Bodies, mass: Mass) -> Iterator[tuple[str, tuple[Piece, ...]]]:
     """Yields the edges of each united structure inside the body, by its path, each drawn once."""
-    outline = traced[mass.structure.path].edges
-    candidates = sorted({edge for path in mass.inner for edge in traced[path].edges} - outline)
-    mask = mass.section.mask(network.midpoints(candidates))
+    outlines = {path: walk.sections[path].edges for path in mass.inner}
+    candidates = sorted(frozenset[int]().union(*outlines.values()) - mass.section.edges)
+    mask = mass.section.mask(walk.network.midpoints(candidates))
     left = {edge for edge, within in zip(candidates, mask, strict=True) if within}
     for path in mass.inner:
-        edges = sorted(traced[path].edges & left)
+        edges = sorted(outlines[path] & left)
         left.difference_update(edges)
         if edges:
-            yield path, tuple(_merged(network, edges))
+            yield path, tuple(_merged(walk.network, edges))
 
 
-def inner_seams(
-    network: Network,
-    mass: Mass,
-    traced: Mapping[str, Traced],
-    sections: Mapping[str, Section],
-    faces: Mapping[str, Sequence[OwnFace]],
-) -> Iterator[tuple[str, tuple[Piece, ...]]]:
-    """Yields the edges of the faces that some structures of a body draw, as far as they lie inside it and no
-    later face of the structure, and no structure in it, lies over them; by the path of the structure, each
-    drawn once.
+def inner_seams(walk: Bodies, mass: Mass, asked: Collection[str]) -> Iterator[tuple[str, tuple[Piece, ...]]]:
+    """Yields the edges of the faces that the `asked` structures of a body draw, as far as they lie inside it
+    and no later face of the structure, and no structure in it, lies over them; by the path of the structure,
+    each drawn once.
     """
-    taken = {edge for path in (*mass.inner, mass.structure.path) for edge in traced[path].edges}
-    for path in (*mass.inner, mass.structure.path):
-        own = [face.section for face in faces.get(path, ())]
-        over = union([sections[inner] for inner in mass.inner if inner.startswith(f"{path}.")])
+    network, paths = walk.network, (*mass.inner, mass.structure.path)
+    taken = {edge for path in paths for edge in walk.sections[path].edges}
+    for path in paths:
+        own = [face.section for face in walk.faces.get(path, ()) if path in asked]
+        over = union([walk.sections[inner] for inner in mass.inner if inner.startswith(f"{path}.")])
         found: set[int] = set()
-        outlines = trace_all(network, own)
-        for section, outline in zip(reversed(own), reversed(outlines), strict=True):
-            candidates = sorted(outline.edges - taken)
+        traced(own)  # all at once
+        for section in reversed(own):
+            candidates = sorted(section.edges - taken)
             spots = network.midpoints(candidates)
             seen = mass.section.mask(spots) & ~over.mask(spots)
             found.update(edge for edge, is_seen in zip(candidates, seen, strict=True) if is_seen)
@@ -507,22 +499,21 @@ def with_gaps_closed(
     network: Network,
     root: SolvedStructure,
     shapes: Mapping[str, Sequence[Shape]],
-    arranged: Callable[[Network], T],
-    findings_of: Callable[[T], Sequence[Finding]],
-) -> tuple[Network, list[Gap], T]:
-    """Returns the network with small gaps between curves closed, these gaps, and what is arranged then."""
+    arranged: Callable[[Network], Bodies],
+) -> tuple[Bodies, list[Gap]]:
+    """Returns what is arranged of the network with small gaps between curves closed, and these gaps."""
     found = with_finer_chords(network, arranged)
-    gaps = _open_gaps(network, findings_of(found), shapes)
+    gaps = _open_gaps(network, found.findings, shapes)
     while gaps:
         joined = Network(_without_gaps(network.curves, gaps), box=network.box)
         then = with_finer_chords(joined, arranged)
-        kept = list(_effective(gaps, findings_of(then)))
+        kept = list(_effective(gaps, then.findings))
         if len(kept) == len(gaps):
-            network, found = joined, then
+            found = then
             break
         gaps = kept
-    welded = _welded_gaps(network, root.walk(), shapes)
-    return network, [*gaps, *_effective(welded, findings_of(found))], found
+    welded = _welded_gaps(found.network, root.walk(), shapes)
+    return found, [*gaps, *_effective(welded, found.findings)]
 
 
 def _open_gaps(

@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import field
 from functools import lru_cache
-from itertools import accumulate, combinations, pairwise
+from itertools import combinations, pairwise
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -17,7 +17,7 @@ from aidl_lang.geometry.curves import Arc, Bezier, Circle, Floats, Line, Piece, 
 from aidl_lang.geometry.intersect import Crossing, Table, all_intersections, inside, near_rows
 from aidl_lang.geometry.network import CHORD, RELATIVE_TOLERANCE, Hulls, Network
 from aidl_lang.geometry.region import Face, Loop, Region
-from aidl_lang.geometry.sections import Section, arranged, closed_loop, faces_of, filled, trace, union
+from aidl_lang.geometry.sections import Section, closed_loop, faces_of, outlined, overlaid, union
 
 if TYPE_CHECKING:
     from aidl_lang.common.font_files import Curve
@@ -155,17 +155,17 @@ def _facing(a: Piece, b: Piece, t: float, s: float) -> float | None:
 
 def united(*regions: Region) -> Region:
     """Returns the union of regions."""
-    return _combined(regions, lambda *sections: union(sections))
+    return combined(regions, lambda *sections: [union(sections)])[0]
 
 
 def without(a: Region, *others: Region) -> Region:
     """Returns the region `a` without the others."""
-    return _combined((a, *others), lambda base, *sections: base - union(sections))
+    return combined((a, *others), lambda base, *sections: [base - union(sections)])[0]
 
 
 def common(a: Region, *others: Region) -> Region:
     """Returns what of other regions lies in the region `a`."""
-    return _combined((a, *others), lambda base, *sections: base & union(sections))
+    return combined((a, *others), lambda base, *sections: [base & union(sections)])[0]
 
 
 def clearance(a: Region, b: Region) -> float:
@@ -176,14 +176,9 @@ def clearance(a: Region, b: Region) -> float:
     return closest[0] if closest else float("inf")
 
 
-def _combined(regions: Sequence[Region], operation: Callable[..., Section]) -> Region:
-    firsts = list(accumulate((len(region.pieces) for region in regions), initial=0))
-
-    def area(network: Network) -> Section:
-        placed = zip(regions, firsts, strict=False)
-        return operation(*(filled(network, [loop.pieces for loop in r.loops], k) for r, k in placed))
-
-    return arranged([piece for region in regions for piece in region.pieces], area)
+def combined(regions: Sequence[Region], areas: Callable[..., Sequence[Section]]) -> list[Region]:
+    """Returns the regions of areas that are put together from those of some regions."""
+    return overlaid([outlined(region) for region in regions], areas)
 
 
 # --- Outlines that touch each other in a point, with a joint there: boundary representations want a vertex
@@ -344,13 +339,12 @@ class Contact:
 
 @record()
 class Solid:
-    """A body, or an area that others lie on: its region, also as polygons of the network, its place in the
-    order of drawing, and its colour, if it has one. One that `is_clear` hides nothing.
+    """A body, or an area that others lie on: its place in the order of drawing, and its colour, if it has
+    one. One that `is_clear` hides nothing.
     """
 
     path: str
-    region: Region
-    section: Section = field(repr=False, compare=False)
+    section: Section
     place: float
     color: str | None
     is_clear: bool
@@ -377,35 +371,35 @@ def contacts(network: Network, solids: Sequence[Solid]) -> Contacts:
 
     def near() -> tuple[tuple[str, str], ...]:
         reach = max(UNNOTICED, network.tolerance)
-        pairs = sorted(near_rows([s.region.box for s in solids], reach + network.tolerance).tolist())
+        pairs = sorted(near_rows([s.section.region.box for s in solids], reach + network.tolerance).tolist())
         couples = ((solids[i], solids[j]) for i, j in pairs)
         return tuple(
             (a.path, b.path)
             for a, b in couples
-            if _shared(network, a, b, exactly=False) > 0 or lie_within(a.region, b.region, reach)
+            if _shared(a, b, exactly=False) > 0 or lie_within(a.section.region, b.section.region, reach)
         )
 
     def everything() -> tuple[Contact, ...]:
         pairs: Iterable[tuple[int, int]] = combinations(range(len(solids)), 2)
         if len(solids) > ALL_PAIRS:
-            pairs = sorted(near_rows([s.region.box for s in solids], NEAR * network.size).tolist())
+            pairs = sorted(near_rows([s.section.region.box for s in solids], NEAR * network.size).tolist())
         return tuple(_compare(network, solids[i], solids[j]) for i, j in pairs)
 
-    return Contacts(tuple((s.path, s.region) for s in solids), Later(near), Later(everything))
+    return Contacts(tuple((s.path, s.section.region) for s in solids), Later(near), Later(everything))
 
 
-def _shared(network: Network, a: Solid, b: Solid, *, exactly: bool) -> float:
+def _shared(a: Solid, b: Solid, *, exactly: bool) -> float:
     """Returns the area that two bodies share; that of their polygons will do if it is no thin one."""
     common = a.section & b.section
     if common.is_nothing:
         return 0.0
-    return trace(network, common).region.area if exactly or common.is_thin else common.area
+    return common.region.area if exactly or common.is_thin else common.area
 
 
 def _compare(network: Network, a: Solid, b: Solid) -> Contact:
-    if (shared := _shared(network, a, b, exactly=True)) > 0:
+    if (shared := _shared(a, b, exactly=True)) > 0:
         return Contact(a.path, b.path, "overlapping", area=shared)
-    closest = region_distance(a.region, b.region)
+    closest = region_distance(a.section.region, b.section.region)
     gap = closest[0] if closest and closest[0] > network.tolerance else None
     return Contact(a.path, b.path, "touching" if gap is None else "apart", gap)
 
@@ -440,7 +434,7 @@ def lettered_region(letters: Sequence[Sequence[Piece]]) -> Region | None:
 def united_character(outline: tuple[Curve, ...]) -> tuple[Curve, ...]:
     """Returns the outline of what the contours of a character enclose together, by the non-zero rule."""
     curves = [Line(*c) if len(c) == 2 else Bezier(*c) for c in outline]
-    region = arranged(curves, lambda network: filled(network, _contours(curves), 0, "NonZero"))
+    (region,) = overlaid([(list(_contours(curves)), "NonZero")], lambda whole: [whole])
     return tuple(map(_points, region.pieces))
 
 

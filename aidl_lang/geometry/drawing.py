@@ -7,8 +7,6 @@ from dataclasses import replace
 from functools import cached_property, partial
 from typing import TypeAlias
 
-import numpy as np
-
 from aidl_lang.common.colors import css_color
 from aidl_lang.common.diagnostics import Diagnostic, by_statement, ordered
 from aidl_lang.common.records import record
@@ -31,11 +29,11 @@ from aidl_lang.geometry.bodies import (
 from aidl_lang.geometry.boolean import Contact, Contacts, Solid, contacts, lettered_region
 from aidl_lang.geometry.curves import Bounds, Piece, has_extent, larger_side, union_bounds, usable
 from aidl_lang.geometry.faces import ENGRAVED, Shape, own_faces, region_of, union_of
-from aidl_lang.geometry.network import GRID, Network
+from aidl_lang.geometry.network import Network
 from aidl_lang.geometry.notes import finding_notes, gap_note, stroked_note, unusable_note, upright_note
 from aidl_lang.geometry.pieces import LETTERING, detached_notes, piece_notes
 from aidl_lang.geometry.region import Face, Measures, Region, measure
-from aidl_lang.geometry.sections import Section, Traced, fill, trace, trace_all, union
+from aidl_lang.geometry.sections import Section, section_of, traced, union
 from aidl_lang.geometry.solved import Frame, SolvedGeometry, SolvedModel, SolvedStructure
 from aidl_lang.geometry.styles import (
     Style,
@@ -55,7 +53,6 @@ from aidl_lang.geometry.styles import (
 SLIT = "slit"
 _Curves: TypeAlias = tuple[list[Piece], list[Bounds]]
 _Shapes: TypeAlias = dict[str, list[Shape]]
-_Arranged: TypeAlias = tuple[Bodies, list[Mass], dict[str, Traced]]
 
 
 @record()
@@ -190,14 +187,13 @@ def draw(model: SolvedModel) -> tuple[Drawing, Findings]:
         s: replace(styles[s], opacity=0.0, stroke=0.0) for s, _, is_bare in veiled if is_bare
     }
     made = {path: [s for s in of if s.geometry.path not in aside] for path, of in shapes.items()}
-    network, gaps, (walk, masses, traced) = with_gaps_closed(
-        network, root, shapes, partial(_arranged, root, made, clips, blind), lambda found: found[0].findings
-    )
-    regions = {path: outline.region for path, outline in traced.items()}
-    bodies = tuple(Body(path, regions[path], of_bodies[path]) for path in (m.structure.path for m in masses))
+    walk, gaps = with_gaps_closed(network, root, shapes, partial(_arranged, root, made, clips, blind))
+    network, masses = walk.network, walk.bodies
+    regions = {path: section.region for path, section in walk.sections.items()}
+    bodies = tuple(Body(m.structure.path, m.section.region, of_bodies[m.structure.path]) for m in masses)
     order = places_of(root)
     solids = [
-        Solid(b.path, b.region, m.section, order[b.path], b.style.color, b.style.is_clear)
+        Solid(b.path, m.section, order[b.path], b.style.color, b.style.is_clear)
         for b, m in zip(bodies, masses, strict=True)
     ]
     touching = contacts(network, solids)
@@ -206,16 +202,16 @@ def draw(model: SolvedModel) -> tuple[Drawing, Findings]:
         Seam(path, m.structure.path, pieces, is_asked=styles[path].has_seams)
         for m in masses
         if m.inner
-        for path, pieces in visible_seams(network, m, traced)
+        for path, pieces in visible_seams(walk, m)
         if path not in inlaid
     )
-    asked = {path: faces for path, faces in walk.faces.items() if styles[path].has_seams}
+    asked = {path for path in walk.faces if styles[path].has_seams}
     seams += tuple(
         Seam(path, m.structure.path, pieces, is_asked=True)
         for m in (masses if asked else ())
-        for path, pieces in inner_seams(network, m, traced, walk.sections, asked)
+        for path, pieces in inner_seams(walk, m, asked)
     )
-    scene = _Scene(root, shapes, engraved, styles, order, walk, masses)
+    scene = _Scene(root, shapes, engraved, styles, order, walk)
     areas = dict(scene.areas(aside, ink[0]))
     lying = [*solids, *(area.seen for area in areas.values())]
     ground = legibility.Ground(network, sorted(lying, key=lambda body: body.place), *ink, order)
@@ -235,7 +231,7 @@ def draw(model: SolvedModel) -> tuple[Drawing, Findings]:
             if not (isinstance(f, Covered) and scene.is_seen(f, areas)):
                 notes += finding_notes(f, network)
         notes += detached_notes(root, paths, touching)
-        notes += piece_notes(root, walk, masses, solids, touching.near())
+        notes += piece_notes(root, walk, solids, touching.near())
         notes += [*scene.unseen(ground), *scene.covered_letters(ground)]
         notes += legibility.overhanging_notes(root, bodies, strokes)
         notes += legibility.colliding_notes(root, strokes, network.tolerance)
@@ -257,15 +253,17 @@ def draw(model: SolvedModel) -> tuple[Drawing, Findings]:
 
 def _arranged(
     root: SolvedStructure, shapes: _Shapes, clips: Clips, blind: Collection[str], network: Network
-) -> _Arranged:
-    """Returns the bodies, and the outlines of everything that has material or cuts, in order of writing."""
+) -> Bodies:
+    """Returns the walk with its bodies, and with the sections of all that has material or cuts in order of
+    writing, their regions found.
+    """
     walk = Bodies(network, shapes, dict(clip_sections(network, root, clips)), blind)
     masses = _root_masses(walk, root)
     walk.sections.update((m.structure.path, m.section) for m in masses)
-    paths = [s.path for s in root.walk() if s.path in walk.sections]
-    outlines = trace_all(network, [walk.sections[path] for path in paths])
-    traced = dict(zip(paths, outlines, strict=True))
-    return walk, [m for m in masses if traced[m.structure.path].region], traced
+    walk.sections = {s.path: walk.sections[s.path] for s in root.walk() if s.path in walk.sections}
+    traced(list(walk.sections.values()))
+    walk.bodies = [m for m in masses if m.section.region]
+    return walk
 
 
 def _collect(root: SolvedStructure, notes: list[Diagnostic]) -> tuple[_Curves, _Curves, _Shapes, _Shapes]:
@@ -334,7 +332,6 @@ class _Scene:
     styles: dict[str, Style]
     order: Mapping[str, int]
     walk: Bodies
-    masses: Sequence[Mass]
 
     @cached_property
     def colored(self) -> set[str]:
@@ -354,7 +351,7 @@ class _Scene:
         but the holes in it if it lies `aside`, as a veil.
         """
         network = self.walk.network
-        mass_of = {part.path: m for m in self.masses for part in united_parts(m.structure)}
+        mass_of = {part.path: m for m in self.walk.bodies for part in united_parts(m.structure)}
         plain: dict[str, list[Shape]] = {}  # by body: what has its colour
         for path, m in mass_of.items():
             of = (s for s in self.shapes[path] if not is_filled(s.geometry, m.structure.kind))
@@ -371,10 +368,7 @@ class _Scene:
                     found = list(_told_apart([shape], ink, is_area=True))
                     region = Region(next((faces for _, faces in found if faces), ()))
                     loose = next((lines for lines, faces in found if not faces), ())
-                    polygons = map(np.array, region.polygons(network.tolerance))
-                    whole = section = fill(
-                        [network.to_grid(p) * np.float64(GRID) for p in polygons], "EvenOdd"
-                    )
+                    whole = section = section_of(region, network)
                 else:
                     whole = union_of(own_faces(network, [shape]).faces)
                     if g.path in aside:
@@ -387,10 +381,9 @@ class _Scene:
                         if (key := (body, len(later))) not in above:
                             above[key] = union_of(own_faces(network, later).faces)
                         section = section - above[key]  # in the colour of the body again
-                    region = trace(network, section).region
-                if region:
+                if section.region:
                     look = styled(self.styles[structure.path], g)
-                    seen = Solid(g.path, region, section, place, look.color, look.is_clear)
+                    seen = Solid(g.path, section, place, look.color, look.is_clear)
                     yield g.path, _Area(seen, whole, loose)
 
     def strokes(
@@ -476,7 +469,7 @@ class _Scene:
     def covered_letters(self, ground: legibility.Ground) -> Iterator[Diagnostic]:
         """Warnings about letters of solids and holes that later bodies lie over."""
         # The masses of an assembly follow its own.
-        place = {s.path: self.order[m.structure.path] for m in self.masses for s in m.structure.walk()}
+        place = {s.path: self.order[m.structure.path] for m in self.walk.bodies for s in m.structure.walk()}
         for structure in self.root.walk():
             for face in self.walk.faces.get(structure.path, ()) if structure.path in place else ():
                 if all(g.type == LETTERING for g in face.geometries):
@@ -488,8 +481,8 @@ class _Scene:
 def _colored(
     structure: SolvedStructure, geometry: SolvedGeometry, style: Style, area: _Area
 ) -> Iterator[Stroke]:
-    look, faces, whole = styled(style, geometry), area.seen.region.faces, tuple(geometry.curves())
-    yield Stroke(structure.path, geometry.path, area.seen.region.pieces, look, faces=faces, whole=whole)
+    look, seen, whole = styled(style, geometry), area.seen.section.region, tuple(geometry.curves())
+    yield Stroke(structure.path, geometry.path, seen.pieces, look, faces=seen.faces, whole=whole)
     if area.loose:
         yield Stroke(structure.path, geometry.path, area.loose, look)
 

@@ -25,7 +25,7 @@ from aidl_lang.geometry.curves import (
 )
 from aidl_lang.geometry.network import Joined, Network, Use, with_finer_chords
 from aidl_lang.geometry.region import Polygon, Region, polygon_area
-from aidl_lang.geometry.sections import Section, fill, trace, union
+from aidl_lang.geometry.sections import Section, fill, union
 from aidl_lang.geometry.solved import Scalar, SolvedGeometry, Values, described
 
 if TYPE_CHECKING:
@@ -139,14 +139,16 @@ def _enclosed(
         if not uses:
             continue
         if shape.type == WINDING:
-            sections.append(fill([network.polyline(loop) for loop in _walks(network, uses)], "NonZero"))
+            walks = [network.polyline(walk) for walk in _walks(network, uses)]
+            sections.append(fill(walks, "NonZero", network))
         else:
             sections.append(_alternating(network, uses))
         nodes.append(set(_ends(network, uses)))
         if places := _crossings(network, uses):
             crossed.append((shape, tuple(network.nodes[node] for node in places)))
     groups = [union([sections[k] for k in group]) for group in _crossing(sections, nodes)]
-    return fill([polygon for group in groups for polygon in group.to_polygons()], "EvenOdd"), crossed
+    polygons = [polygon for group in groups for polygon in group.to_polygons()]
+    return fill(polygons, "EvenOdd", network), crossed
 
 
 def _ends(network: Network, uses: Iterable[Use]) -> Iterator[int]:
@@ -307,8 +309,8 @@ def _bridges(network: Network, uses: Sequence[Use]) -> set[int]:
 def _alternating(network: Network, uses: list[Use]) -> Section:
     """Returns the loops of one shape by the even-odd rule; at a node of odd degree, all enclosed."""
     if _has_odd_node(network, uses):
-        return fill(_outlines(network, uses)[0], "NonZero")
-    return fill([network.polyline(loop) for loop in _loops(network, uses)], "EvenOdd")
+        return fill(_outlines(network, uses)[0], "NonZero", network)
+    return fill([network.polyline(loop) for loop in _loops(network, uses)], "EvenOdd", network)
 
 
 def _loops(network: Network, uses: list[Use]) -> list[list[Use]]:
@@ -385,7 +387,7 @@ def _chain_free(
         joined.join(network.first(use), network.last(use))
     for part in joined.groups(kept, lambda use: network.first(use)):
         polygons, bounding = _outlines(network, part)
-        section = fill(polygons, "NonZero")
+        section = fill(polygons, "NonZero", network)
         if not section.is_nothing:
             names = tuple(g for g, number in free if _touches(network, number, bounding))
             result.faces.append(OwnFace(names, section))
@@ -403,10 +405,10 @@ def _close_with_outlines(
     uses = [use for _, number in rest for use in network.uses[number]]
     together, bounding = _outlines(network, _without_dangling(network, [*uses, *outlines]))
     hull, _ = _outlines(network, outlines)
-    added = fill(together, "NonZero") - fill(hull, "NonZero")
+    added = fill(together, "NonZero", network) - fill(hull, "NonZero", network)
     if added.is_nothing:
         return set()
-    boundary = trace(network, added).edges
+    boundary = added.edges
     edges = [e for e in dict.fromkeys(e for e, _ in uses) if e in bounding]
     within = added.mask(network.midpoints(edges))
     used = {e for e, is_inside in zip(edges, within, strict=True) if is_inside or e in boundary}
@@ -430,7 +432,7 @@ def region_of(
 
     def traced(network: Network) -> tuple[Region, list[SolvedGeometry]]:
         found = own_faces(network, shapes)
-        return trace(network, union_of(found.faces)).region, [leaf for leaf, _ in found.loose]
+        return union_of(found.faces).region, [leaf for leaf, _ in found.loose]
 
     return with_finer_chords(Network(curves), traced)
 

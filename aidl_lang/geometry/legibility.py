@@ -22,7 +22,7 @@ from aidl_lang.geometry.boolean import Solid, stretches_beside
 from aidl_lang.geometry.curves import NO_LENGTH, Bounds, Line, Piece, Vec, are_near, union_bounds
 from aidl_lang.geometry.faces import Shape
 from aidl_lang.geometry.intersect import from_sides, inside, meet
-from aidl_lang.geometry.network import GRID, Network, Use
+from aidl_lang.geometry.network import Network, Use
 from aidl_lang.geometry.notes import local
 from aidl_lang.geometry.pieces import LETTERING
 from aidl_lang.geometry.region import Region, length
@@ -78,7 +78,7 @@ class Ground:
     def covering(self, curves: Sequence[int], place: float) -> str | None:
         """Returns the path of a body that is drawn over all of some curves; None if there is none."""
         box = union_bounds([self.boxes[curve] for curve in curves])
-        over = [k for k in self._above(curves, place) if _lies_within(box, self.bodies[k].region.box)]
+        over = [k for k in self._above(curves, place) if _lies_within(box, self.bodies[k].section.region.box)]
         over = [k for k in over if all(k in self._at_middles[curve] for curve in curves)]
         within = [on for _, on in self._parts(curves, over)]
         return next((self.bodies[k].path for k in over if all(k in on for on in within)), None)
@@ -97,7 +97,7 @@ class Ground:
 
     def _around(self, curves: Sequence[int], bodies: Iterable[int]) -> list[int]:
         box = union_bounds([self.boxes[curve] for curve in curves])
-        return [k for k in bodies if curves and are_near(box, self.bodies[k].region.box)]
+        return [k for k in bodies if curves and are_near(box, self.bodies[k].section.region.box)]
 
     def hidden_part(self, faces: Section, place: float) -> tuple[float, list[str]]:
         """Returns the share of faces that later bodies cover, and these, but for inlays within the faces."""
@@ -116,7 +116,7 @@ class Ground:
         if not bodies:
             return []
         own, boxes = [self.curves[k] for k in curves], [self.boxes[k] for k in curves]
-        outlines = [self.bodies[k].region for k in bodies]
+        outlines = [self.bodies[k].section.region for k in bodies]
         around = union_bounds(boxes)
         near = [(p, b) for r in outlines for p, b in zip(r.pieces, r.boxes.tolist(), strict=True)]
         near = [(p, b) for p, b in near if are_near(around, b)]
@@ -133,7 +133,7 @@ class Ground:
 
     def _holders(self, spots: Sequence[Vec], bodies: Sequence[int]) -> list[list[int]]:
         """Returns for each spot those of some bodies that it lies in."""
-        on_grid = self.network.to_grid(np.array(spots)) * np.float64(GRID)
+        on_grid = self.network.on_grid(np.array(spots))
         order = np.argsort(on_grid[:, 0], kind="stable")
         along, found = on_grid[order, 0], [list[int]() for _ in spots]
         for k in bodies:

@@ -241,7 +241,11 @@ class Network:
         self.uses: list[list[Use]] = self._arrange()
         self._draw_polylines()
 
-    def to_grid(self, xy: Floats) -> Ints:
+    def on_grid(self, xy: Floats) -> Floats:
+        """Returns points in grid units, as Manifold takes them."""
+        return self._steps(xy) * np.float64(GRID)
+
+    def _steps(self, xy: Floats) -> Ints:
         grid: Ints = np.rint((xy - np.array(self.middle)) * (self.scale / GRID)).astype(np.int64)
         return grid
 
@@ -343,7 +347,7 @@ class Network:
         parts = np.array([(e.curve, e.t0, e.t1 - e.t0) for e in edges]).reshape(-1, 3)[number]
         spots = self._table.at(parts[:, 0].astype(np.intp), parts[:, 1] + parts[:, 2] * share)[0]
         nodes = np.array(self.nodes, dtype=float).reshape(-1, 2)
-        self._grid = self.to_grid(np.concatenate((nodes, spots)))
+        self._grid = self._steps(np.concatenate((nodes, spots)))
         self._offset = begins + len(nodes) if edges else np.zeros(1, dtype=np.intp)
         self.node_grid = self._grid[: len(nodes)]
         keys, owner = pack(self._grid), np.concatenate((np.full(len(nodes), -1), number))

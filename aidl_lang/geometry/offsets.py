@@ -10,9 +10,8 @@ import numpy as np
 
 from aidl_lang.common.records import record
 from aidl_lang.geometry.curves import Arc, Bezier, Circle, Floats, Line, Piece, Vec, extent, turn_between
-from aidl_lang.geometry.network import Network
 from aidl_lang.geometry.region import Face, Loop, Region
-from aidl_lang.geometry.sections import Section, arranged, filled, union
+from aidl_lang.geometry.sections import Outlined, Section, outlined, overlaid, union
 
 # --- The pieces that offsets are put together from: strips along curves, wedges at corners, caps at ends.
 #
@@ -228,18 +227,13 @@ def _joints(curves: Sequence[Piece], near: float) -> list[tuple[Vec, list[Vec]]]
 
 
 def _combined(region: Region, strips: Sequence[Strip], *, cut: bool) -> Region:
-    strokes = (p for strip in strips for outline in strip for p in outline)
+    def area(base: Section, *sections: Section) -> Sequence[Section]:
+        added = union(sections)
+        return [base - added if cut else union([base, added])]
 
-    def area(network: Network) -> Section:
-        place, sections = len(region.pieces), []
-        for strip in strips:
-            # Normals of a curve that bends closely cross: all that a single outline goes around counts.
-            sections.append(filled(network, strip, place, "NonZero" if len(strip) == 1 else "EvenOdd"))
-            place += sum(map(len, strip))
-        base, added = filled(network, [loop.pieces for loop in region.loops], 0), union(sections)
-        return base - added if cut else union([base, added])
-
-    return arranged([*region.pieces, *strokes], area)
+    # Normals of a curve that bends closely cross: all that a single outline goes around counts.
+    shapes: list[Outlined] = [(strip, "NonZero" if len(strip) == 1 else "EvenOdd") for strip in strips]
+    return overlaid([outlined(region), *shapes], area)[0]
 
 
 # --- The convex hull of curves: parts of the curves themselves, and the straight lines that touch two of

@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING
 from aidl_lang.building import expression as ex
 from aidl_lang.building.attributes import FILLING, OF_AREAS
 from aidl_lang.building.curves import clockwise, number, pieces, translate, xy
-from aidl_lang.building.expression import DEGREE, Evaluator, Place, Unknown
-from aidl_lang.building.lower import Lowered
+from aidl_lang.building.expression import DEGREE, Evaluator, Place
+from aidl_lang.building.lower import Lowered, Solved
 from aidl_lang.building.model import Finish, Geometry, Model, Structure, convert, own_geometry
 from aidl_lang.building.state import NameBinding, ParamBinding, PassedBinding, Scope, VarBinding
 from aidl_lang.building.values import Num, PointVal, TextVal, Value
@@ -29,7 +29,6 @@ from aidl_lang.geometry.drawing import Drawing, Findings, draw
 from aidl_lang.geometry.faces import as_edges, parts_of
 from aidl_lang.geometry.notes import unusable_note
 from aidl_lang.geometry.solved import Scalar, SolvedGeometry, SolvedModel, SolvedStructure, Values, described
-from aidl_lang.solver.problem import Solution
 from aidl_lang.syntax import ast
 
 if TYPE_CHECKING:
@@ -40,11 +39,11 @@ _HEAVY = "most of its curves are made here"
 
 
 def pictured(
-    built: Model, lowered: Lowered, solution: Solution, freedom: Callable[[], Freedom], watch: Stopwatch
+    built: Model, solution: Solved, freedom: Callable[[], Freedom], watch: Stopwatch
 ) -> tuple[SolvedModel, Evaluator, Drawing, Findings]:
     """Returns the solved model with its evaluator, its drawing, and diagnostics on it."""
     with watch("read out"):
-        model, evaluator = read_out(built, lowered, solution, freedom)
+        model, evaluator = read_out(built, solution, freedom)
     with watch("regions"), blaming(partial(_most_drawn, model), _HEAVY):
         model, notes = with_places(replace(model, size_up=partial(_sizes, built, evaluator)))
         if model.is_unfinished:
@@ -87,40 +86,35 @@ def _most_drawn(model: SolvedModel) -> Span | None:
 # --- Model + Solution → SolvedModel: every number read off at the solved values, in the frame of the root.
 
 
-def read_out(
-    model: Model, lowered: Lowered, solution: Solution, freedom: Callable[[], Freedom]
-) -> tuple[SolvedModel, Evaluator]:
+def read_out(model: Model, solution: Solved, freedom: Callable[[], Freedom]) -> tuple[SolvedModel, Evaluator]:
     """Returns the solved model, with its `freedom` worked out on demand, and the evaluator of its values."""
-    values: dict[Unknown, float] = {
-        u: float(v) for u, v in zip(lowered.unknowns, solution.values, strict=True)
-    }
+    lowered = solution.problem
+    values = lowered.by_unknown(solution.values)
     evaluator = Evaluator(values)
     changed = tuple(
         solved.Change(u.path, u.guess, values[u], u.holder.span, u.description, u.is_size)
         for u in map(lowered.unknowns.__getitem__, solution.changed)
     )
-    reports = tuple(_reports(model, lowered, solution))
+    reports = tuple(_reports(model, solution))
     root = _Reader(model, evaluator).structure(model.root)
     readings = tuple(dict.fromkeys(solved.Reading(span, text) for span, text in model.readings))
-    mobility = Later(partial(_mobility, model, lowered, solution, freedom))
+    mobility = Later(partial(_mobility, model, solution, freedom))
     return SolvedModel(solution.status.value, root, reports, changed, readings, mobility), evaluator
 
 
-def _mobility(
-    model: Model, lowered: Lowered, solution: Solution, freedom: Callable[[], Freedom]
-) -> solved.Mobility:
+def _mobility(model: Model, solution: Solved, freedom: Callable[[], Freedom]) -> solved.Mobility:
     found = freedom()
 
     def ways() -> tuple[solved.Motion, ...]:
         from aidl_lang.geometry.freedom import motions
 
-        return motions(model, lowered, solution, found)
+        return motions(model, solution, found)
 
     each = zip(model.root.walk(), found.group_degrees, found.states, strict=True)
     return solved.Mobility(
         found.degrees,
-        tuple(lowered.unknowns[i].path for i in found.free),
-        tuple(_floating(lowered, found)),
+        tuple(solution.problem.unknowns[i].path for i in found.free),
+        tuple(_floating(solution.problem, found)),
         {structure.path: (degrees, str(state)) for structure, degrees, state in each},
         Later(ways),
     )
@@ -140,17 +134,14 @@ def _literal(model: Model, finish: Finish) -> ast.Number | None:
 
 def _floating(lowered: Lowered, freedom: Freedom) -> Iterator[str]:
     """Yields the paths of structures with guessed values that no constraint ties to what is around them."""
-    guessed: set[tuple[int, int]] = set()
-    problem = lowered.problem
-    if problem.axis is not None:
-        guessed.update(zip(problem.group.tolist(), problem.axis.tolist(), strict=True))
+    guessed = set(zip(lowered.group.tolist(), lowered.axis.tolist(), strict=True))
     for group in freedom.loose:
         if (group, 0) in guessed and (group, 1) in guessed:
             yield lowered.groups[group]
 
 
-def _reports(model: Model, lowered: Lowered, solution: Solution) -> Iterator[solved.ConstraintReport]:
-    number = {stated: index for index, stated in enumerate(lowered.stated)}
+def _reports(model: Model, solution: Solved) -> Iterator[solved.ConstraintReport]:
+    number = {stated: index for index, stated in enumerate(solution.problem.stated)}
     for stated in model.constraints:
         if (index := number.get(stated)) is not None:
             yield solved.ConstraintReport(

@@ -20,8 +20,7 @@ from aidl_lang.geometry.boolean import UNNOTICED, Contacts, Solid, lie_within, n
 from aidl_lang.geometry.faces import OwnFace, union_of
 from aidl_lang.geometry.intersect import near_pairs
 from aidl_lang.geometry.network import Joined
-from aidl_lang.geometry.region import Region
-from aidl_lang.geometry.sections import Section, trace, trace_all, union
+from aidl_lang.geometry.sections import Section, traced, union
 from aidl_lang.geometry.solved import SolvedStructure
 
 _RING = 3
@@ -81,19 +80,15 @@ def _detached(structures: Sequence[SolvedStructure], nearest: tuple[float, str])
 @record()
 class _Piece:
     section: Section
-    region: Region
     faces: tuple[OwnFace, ...]
 
-    def meets(self, section: Section, region: Region) -> bool:
-        return self.section.overlaps(section) or lie_within(self.region, region, UNNOTICED)
+
+def _meet(one: Section, other: Section) -> bool:
+    return one.overlaps(other) or lie_within(one.region, other.region, UNNOTICED)
 
 
 def piece_notes(
-    root: SolvedStructure,
-    walk: Bodies,
-    masses: Sequence[Mass],
-    solids: Sequence[Solid],
-    pairs: Sequence[tuple[str, str]],
+    root: SolvedStructure, walk: Bodies, solids: Sequence[Solid], pairs: Sequence[tuple[str, str]]
 ) -> Iterator[Diagnostic]:
     """Yields a warning for pieces of a solid that no chain of touching pieces links to the rest, and for each
     hole that cuts pieces free which nothing holds, as the inside of an O. A solid that is the whole program
@@ -101,17 +96,17 @@ def piece_notes(
     """
     free = marked_detached(root)
     known = {solid.path: solid for solid in solids}
-    for mass in masses:
+    for mass in walk.bodies:
         solid = mass.structure
         if solid is not root and solid.kind == "solid" and solid.path not in free:
             pieces = _pieces(walk, mass)
             if len(pieces) > 1:
                 yield from _notes(solid, _groups(pieces, known[solid.path], known, pairs))
-    held, holes = defaultdict[str, list[Solid]](list), _holes(root, masses)
+    held, holes = defaultdict[str, list[Solid]](list), _holes(root, walk.bodies)
     for a, b in pairs:
         held[a].append(known[b])
         held[b].append(known[a])
-    for mass in masses:
+    for mass in walk.bodies:
         path = mass.structure.path
         if path not in free and mass.section.num_contour() > 1:
             yield from _cut_free(walk, mass, holes.get(path, ()), held[path])
@@ -134,12 +129,9 @@ def _pieces(walk: Bodies, mass: Mass) -> list[_Piece]:
     for i, j in sorted(near_pairs([s.box for s in (*sections, *(f.section for f in faces))], 0.0)):
         if i < count <= j and sections[i].overlaps(faces[j - count].section):
             of[i].append(faces[j - count])
-    traced = trace_all(walk.network, sections)
-    return [
-        _Piece(section, outline.region, tuple(own))
-        for section, outline, own in zip(sections, traced, of, strict=True)
-        if own  # else it is a hole beside the material
-    ]
+    traced(sections)  # all at once
+    # What no face overlaps is a hole beside the material.
+    return [_Piece(section, tuple(own)) for section, own in zip(sections, of, strict=True) if own]
 
 
 def _material(structure: SolvedStructure) -> Iterator[SolvedStructure]:
@@ -165,10 +157,10 @@ def _groups(
             continue
         other = known[pair[pair[0] == own.path]]
         for number, piece in enumerate(pieces):
-            if piece.meets(other.section, other.region):
+            if _meet(piece.section, other.section):
                 joined.join(number, other.path)
-    for i, j in near_pairs([piece.region.box for piece in pieces], UNNOTICED):
-        if lie_within(pieces[i].region, pieces[j].region, UNNOTICED):
+    for i, j in near_pairs([piece.section.region.box for piece in pieces], UNNOTICED):
+        if lie_within(pieces[i].section.region, pieces[j].section.region, UNNOTICED):
             joined.join(i, j)
     of: dict[int, int] = {}
     for number, piece in enumerate(pieces):
@@ -197,7 +189,7 @@ def _traits(piece: _Piece) -> Iterator[object]:
 
 
 def _note(solid: SolvedStructure, group: Sequence[_Piece], rest: Sequence[_Piece]) -> Diagnostic:
-    gap, place = nearest_region([piece.region for piece in group], [piece.region for piece in rest])
+    gap, place = nearest_region([p.section.region for p in group], [p.section.region for p in rest])
     nearest = rest[place]
     names, beside = _names(solid, group), _names(solid, [nearest])
     first = group[0].faces[0].geometries[0]
@@ -231,7 +223,7 @@ def _cut_free(
     for piece, gap in _enclosed(mass.section.decompose()):
         if piece.overlaps(islands):
             continue  # put there on purpose
-        if _was_joined(walk, mass, piece, gap) and not _touches(walk, piece, others):
+        if _was_joined(walk, mass, piece, gap) and not _touches(piece, others):
             for hole, around in _cutting(walk, holes, gap, piece):
                 _, pieces, names = loose.setdefault(hole.path, (hole, [], {}))
                 pieces.append(piece)
@@ -254,18 +246,18 @@ def _severed(
     beside = [p for p in pieces if id(p) not in enclosed and not p.overlaps(islands)]
     for whole in union_of(_faces(walk, _material(mass.structure))).decompose():
         parts = [piece for piece in beside if whole.covers(piece)]
-        apart = [piece for piece in parts[1:] if not _touches(walk, piece, others)]
+        apart = [piece for piece in parts[1:] if not _touches(piece, others)]
         # Those with which filled again pieces would hang together.
         filled = ((h, union([walk.sections[h.path], *parts])) for h in holes if apart)
         cut = [h for h, whole in filled if len(whole.decompose()) < len(parts)]
         if cut:
-            yield _cut_through(walk, mass.structure, cut, [parts[0], *apart])
+            yield _cut_through(mass.structure, cut, [parts[0], *apart])
 
 
 def _cut_through(
-    walk: Bodies, solid: SolvedStructure, holes: Sequence[SolvedStructure], pieces: Sequence[Section]
+    solid: SolvedStructure, holes: Sequence[SolvedStructure], pieces: Sequence[Section]
 ) -> Diagnostic:
-    boxes = [traced.region.box for traced in trace_all(walk.network, pieces)]
+    boxes = [region.box for region in traced(pieces)]
     sizes = [f"{rough(b[2] - b[0])} × {rough(b[3] - b[1])} mm" for b in boxes[:_MOST]]
     more = f" and {len(boxes) - _MOST} more" if len(boxes) > _MOST else ""
     first = holes[0]
@@ -327,11 +319,8 @@ def _was_joined(walk: Bodies, mass: Mass, piece: Section, opening: Section) -> b
     return any(whole.covers(opening) and whole.covers(piece) for whole in near.decompose())
 
 
-def _touches(walk: Bodies, piece: Section, others: Sequence[Solid]) -> bool:
-    if not others:
-        return False
-    known = _Piece(piece, trace(walk.network, piece).region, ())
-    return any(known.meets(other.section, other.region) for other in others)
+def _touches(piece: Section, others: Sequence[Solid]) -> bool:
+    return any(_meet(piece, other.section) for other in others)
 
 
 def _cutting(
@@ -354,7 +343,7 @@ def _fallen(
 ) -> Diagnostic:
     """Returns the warning on pieces that a hole cuts free; `around`: the names of its geometries there."""
     count, largest = len(pieces), max(pieces, key=lambda piece: piece.area)
-    left, bottom, right, top = trace(walk.network, largest).region.box
+    left, bottom, right, top = largest.region.box
     size = f"{rough(right - left)} × {rough(top - bottom)} mm"
     cuts = [g for f in walk.faces[hole.path] for g in f.geometries]
     fall = "a piece falls" if count == 1 else f"{count} pieces fall"

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from importlib import import_module
 from itertools import accumulate
 from typing import Any, Literal, TypeVar
@@ -14,7 +14,7 @@ import numpy as np
 
 from aidl_lang.common.records import record
 from aidl_lang.common.running import checkpoint
-from aidl_lang.geometry.curves import Arc, Bounds, Circle, Floats, Ints, Line, Mask, Piece, Vec
+from aidl_lang.geometry.curves import Arc, Bounds, Circle, Floats, Line, Mask, Piece, Vec
 from aidl_lang.geometry.intersect import inside
 from aidl_lang.geometry.network import NODE, RELATIVE_TOLERANCE, UNKNOWN, Edge, Network, with_finer_chords
 from aidl_lang.geometry.region import Face, Loop, Polygon, Region, length, polygon_area
@@ -26,18 +26,38 @@ NEGLIGIBLE = 16 * RELATIVE_TOLERANCE
 """Width in grid units below which an area is rounding: the drawing measures about 16 of them."""
 
 
+Rule = Literal["EvenOdd", "NonZero"]
+Outlined = tuple[Sequence[Sequence[Piece]], Rule]
+"""Outlines, and the rule by which they are filled."""
+
 _CORNERS = 32
 """Of the polygon that stands for a circle around a corner."""
 
 
 class Section:
-    """An area of the plane bounded by polygons: a `CrossSection` of Manifold, with its area and its box."""
+    """An area of the plane bounded by polygons: a `CrossSection` of Manifold, with its area and its box. One
+    of a network has its exact outlines, too. An empty one may be of none.
+    """
 
-    def __init__(self, shape: Any) -> None:
-        self._shape = shape
+    def __init__(self, shape: Any, network: Network | None = None) -> None:
+        self._shape, self.network = shape, network
         self.is_empty: bool = shape.is_empty()
         self.area: float = shape.area()
         self.box: Bounds = shape.bounds()
+
+    @cached_property
+    def _outlines(self) -> tuple[Region, frozenset[int]]:
+        return _trace([self])[0]
+
+    @property
+    def region(self) -> Region:
+        """The exact region, faces and loops in a canonical order."""
+        return self._outlines[0]
+
+    @property
+    def edges(self) -> frozenset[int]:
+        """The edges of the network that bound it."""
+        return self._outlines[1]
 
     def num_contour(self) -> int:
         return int(self._shape.num_contour())
@@ -50,18 +70,18 @@ class Section:
 
     def decompose(self) -> list[Section]:
         """Returns its connected parts."""
-        return list(map(Section, self._shape.decompose()))
+        return [Section(part, self.network) for part in self._shape.decompose()]
 
     def holes(self) -> list[Section]:
         """Returns the areas that its inner outlines enclose."""
-        whole = fill([p for p in self.to_polygons() if polygon_area(p) > 0], "NonZero")
+        whole = fill([p for p in self.to_polygons() if polygon_area(p) > 0], "NonZero", self.network)
         return (whole - self).decompose()
 
     def __sub__(self, other: Section) -> Section:
-        return Section(self._shape - other._shape) if self.may_meet(other) else self
+        return Section(self._shape - other._shape, self.network) if self.may_meet(other) else self
 
     def __and__(self, other: Section) -> Section:
-        return Section(self._shape ^ other._shape) if self.may_meet(other) else union([])
+        return Section(self._shape ^ other._shape, self.network) if self.may_meet(other) else union([])
 
     def may_meet(self, other: Section) -> bool:
         """Tells whether the boxes overlap by more than nothing."""
@@ -116,10 +136,17 @@ def _manifold() -> Any:
     return import_module("manifold3d")
 
 
-def fill(polygons: Sequence[Polygon], rule: Literal["EvenOdd", "NonZero"]) -> Section:
+def fill(polygons: Sequence[Polygon], rule: Rule, network: Network | None = None) -> Section:
     m = _manifold()
     kept = [p for p in polygons if len(p) > 2]
-    return Section(m.CrossSection(kept, getattr(m.FillRule, rule)) if kept else m.CrossSection())
+    return Section(m.CrossSection(kept, getattr(m.FillRule, rule)) if kept else m.CrossSection(), network)
+
+
+def section_of(region: Region, network: Network) -> Section:
+    """Returns the section of a region whose outlines are not those of the network that has its grid."""
+    found = fill([network.on_grid(p) for p in region.polygons(network.tolerance)], "EvenOdd", network)
+    found._outlines = region, frozenset()
+    return found
 
 
 def widened(polygon: Polygon, by: float, rough: float = 0.0) -> Polygon:
@@ -148,26 +175,28 @@ def union(sections: Sequence[Section]) -> Section:
     """Returns the union of any number of sections."""
     m = _manifold()
     full = [s for s in sections if not s.is_empty]
-    if len(full) == 1:
-        return full[0]
-    shapes = [s._shape for s in full]
-    return Section(m.CrossSection.batch_boolean(shapes, m.OpType.Add) if shapes else m.CrossSection())
+    if len(full) < 2:
+        return full[0] if full else Section(m.CrossSection())
+    return Section(m.CrossSection.batch_boolean([s._shape for s in full], m.OpType.Add), full[0].network)
 
 
-def filled(
-    network: Network,
-    outlines: Iterable[Sequence[object]],
-    number: int,
-    rule: Literal["EvenOdd", "NonZero"] = "EvenOdd",
-) -> Section:
-    """Returns the area in outlines of a network's curves from `number` on, without those too small to see."""
-    polygons = []
-    for outline in outlines:
-        uses = [use for own in network.uses[number : number + len(outline)] for use in own]
-        number += len(outline)
-        if uses:
-            polygons.append(network.polyline(uses))
-    return fill(polygons, rule)
+def overlaid(shapes: Sequence[Outlined], areas: Callable[..., Sequence[Section]]) -> list[Region]:
+    """Returns the regions of areas that are put together from those of some shapes, in one network."""
+
+    def found(network: Network) -> list[Region]:
+        curves, sections = iter(network.uses), []
+        for outlines, rule in shapes:
+            walks = ([use for _ in outline for use in next(curves)] for outline in outlines)
+            # One too small to see has no edges.
+            sections.append(fill([network.polyline(walk) for walk in walks if walk], rule, network))
+        return traced(areas(*sections))
+
+    pieces = [piece for outlines, _ in shapes for outline in outlines for piece in outline]
+    return with_finer_chords(Network(pieces), found)
+
+
+def outlined(region: Region) -> Outlined:
+    return [loop.pieces for loop in region.loops], "EvenOdd"
 
 
 # --- Turns the polygons of a boolean back into outlines of exact curves.
@@ -182,14 +211,6 @@ STRAIGHT = -3
 
 
 @record(slots=True)
-class Traced:
-    """A region and the edges of the network that bound it."""
-
-    region: Region
-    edges: frozenset[int]
-
-
-@record(slots=True)
 class Run:
     """The part `t0..t1` of a curve (None: straight) between two points."""
 
@@ -200,48 +221,34 @@ class Run:
     end: Vec
 
 
-@record(slots=True)
-class Sides:
-    """The sides of many polygons in one table: where each vertex belongs, and the edge each side follows.
-
-    Polygon k has the rows `bounds[k]:bounds[k + 1]`; `starts[k]` are those at which another edge begins.
+def traced(sections: Sequence[Section]) -> list[Region]:
+    """Returns the exact regions of many sections of a network, found at once, which spares most of the table
+    look-ups.
     """
-
-    vertices: Floats
-    bounds: list[int]
-    owner: Ints
-    place: Ints
-    edges: Ints
-    starts: list[list[int]]
+    for section, found in zip(sections, _trace(sections), strict=True):
+        section._outlines = found
+    return [section.region for section in sections]
 
 
-def trace(network: Network, section: Section) -> Traced:
-    """Returns the exact region whose polygons Manifold returned, faces and loops in a canonical order."""
-    return trace_all(network, [section])[0]
-
-
-def trace_all(network: Network, sections: Sequence[Section]) -> list[Traced]:
-    """Traces many regions at once, which spares most of the table look-ups."""
-    faces = [_components(section) for section in sections]
-    sides = _sides(network, [polygon for section in faces for face in section for polygon in face])
-    number = 0
-    result = []
-    for section in faces:
-        used: set[int] = set()
-        traced = []
-        for face in section:
+def _trace(sections: Sequence[Section]) -> list[tuple[Region, frozenset[int]]]:
+    full = [section for section in sections if not section.is_empty]
+    if not full:
+        return [(Region(), frozenset())] * len(sections)
+    network = full[0].network
+    assert network is not None
+    parts = [_components(section) for section in sections]
+    sides = _Sides(network, [polygon for section in parts for part in section for polygon in part])
+    number, result = 0, []
+    for section in parts:
+        used, faces = set[int](), list[Face]()
+        for part in section:
             checkpoint()
-            numbers = range(number, number + len(face))
-            traced += faces_of([loop for k in numbers for loop in _loops(network, sides, k, used)])
-            number += len(face)
-        traced.sort(key=lambda face: face.outer.start)
-        result.append(Traced(Region(tuple(traced)), frozenset(used)))
+            numbers = range(number, number + len(part))
+            faces += faces_of([loop for k in numbers for loop in sides.loops(k, used)])
+            number += len(part)
+        faces.sort(key=lambda face: face.outer.start)
+        result.append((Region(tuple(faces)), frozenset(used)))
     return result
-
-
-def arranged(curves: Sequence[Piece], area: Callable[[Network], Section]) -> Region:
-    """Returns the region of an area that is put together from the network of some curves."""
-    return with_finer_chords(Network(curves), lambda network: trace(network, area(network)).region)
 
 
 def _components(section: Section) -> list[list[Polygon]]:
@@ -280,34 +287,98 @@ def _holders(outers: list[Loop], holes: list[Loop]) -> list[int]:
     return [int(k) for k in holder]
 
 
-def _sides(network: Network, polygons: list[Floats]) -> Sides:
-    """Looks up all vertices, then finds the edge from each to the next one of its polygon."""
-    bounds = [0, *accumulate(len(p) for p in polygons)]
-    vertices = np.concatenate(polygons) if polygons else np.zeros((0, 2))
-    after = np.arange(1, len(vertices) + 1)
-    after[[b - 1 for b in bounds[1:]]] = bounds[:-1]
-    before = np.empty_like(after)
-    before[after] = np.arange(len(after))
-    owner, place = network.look_up(vertices)
-    owner_after = owner[after]
-    edges = np.where(owner >= 0, owner, np.where(owner_after >= 0, owner_after, STRAIGHT))
-    between = np.flatnonzero((owner == NODE) & (owner_after == NODE))
-    ways = zip(place[between].tolist(), place[after[between]].tolist(), strict=True)
-    edges[between] = [network.straight.get(way, STRAIGHT) for way in ways]
-    # Chords that cross where their curves only touch leave vertices unknown to the network.
-    changed = (owner >= 0) & (owner_after >= 0) & (owner != owner_after)
-    unsure = np.flatnonzero((owner == UNKNOWN) | (owner_after == UNKNOWN) | changed)
-    if len(unsure):
-        network.blur(vertices[each_once(np.concatenate((unsure, after[unsure])))])
-        edges[unsure] = network.nearest_edges((vertices[unsure] + vertices[after[unsure]]) / 2)
-    for k in np.flatnonzero(owner == UNKNOWN):
-        node = _touched_node(network, int(edges[before[k]]), int(edges[k]), network.position(vertices[k]))
-        if node is not None:
-            owner[k], place[k] = NODE, node
-    begins = (edges[after] != edges)[before] | (owner == NODE) | (edges == STRAIGHT)
-    rows = np.flatnonzero(begins)
-    starts = [part.tolist() for part in np.split(rows, np.searchsorted(rows, bounds[1:-1]))]
-    return Sides(vertices, bounds, owner, place, edges, starts)
+class _Sides:
+    """The sides of many polygons in one table: where each vertex belongs, and the edge each side follows.
+
+    Polygon k has the rows `bounds[k]:bounds[k + 1]`; `starts[k]` are those at which another edge begins.
+    """
+
+    def __init__(self, network: Network, polygons: list[Floats]) -> None:
+        """Looks up all vertices, then finds the edge from each to the next one of its polygon."""
+        self.network = network
+        bounds = self.bounds = [0, *accumulate(len(p) for p in polygons)]
+        vertices = self.vertices = np.concatenate(polygons)
+        after = np.arange(1, len(vertices) + 1)
+        after[[b - 1 for b in bounds[1:]]] = bounds[:-1]
+        before = np.empty_like(after)
+        before[after] = np.arange(len(after))
+        owner, place = self.owner, self.place = network.look_up(vertices)
+        owner_after = owner[after]
+        edges = np.where(owner >= 0, owner, np.where(owner_after >= 0, owner_after, STRAIGHT))
+        between = np.flatnonzero((owner == NODE) & (owner_after == NODE))
+        ways = zip(place[between].tolist(), place[after[between]].tolist(), strict=True)
+        edges[between] = [network.straight.get(way, STRAIGHT) for way in ways]
+        # Chords that cross where their curves only touch leave vertices unknown to the network.
+        changed = (owner >= 0) & (owner_after >= 0) & (owner != owner_after)
+        unsure = np.flatnonzero((owner == UNKNOWN) | (owner_after == UNKNOWN) | changed)
+        if len(unsure):
+            network.blur(vertices[each_once(np.concatenate((unsure, after[unsure])))])
+            edges[unsure] = network.nearest_edges((vertices[unsure] + vertices[after[unsure]]) / 2)
+        for k in np.flatnonzero(owner == UNKNOWN):
+            node = _touched_node(network, int(edges[before[k]]), int(edges[k]), network.position(vertices[k]))
+            if node is not None:
+                owner[k], place[k] = NODE, node
+        begins = (edges[after] != edges)[before] | (owner == NODE) | (edges == STRAIGHT)
+        rows = np.flatnonzero(begins)
+        self.edges = edges
+        self.starts = [part.tolist() for part in np.split(rows, np.searchsorted(rows, bounds[1:-1]))]
+
+    def loops(self, number: int, used: set[int]) -> list[tuple[float, Loop]]:
+        """Returns the exact loops of a polygon with their areas, without those thinner than the tolerance;
+        adds the edges that they follow to `used`.
+        """
+        network = self.network
+        low, high = self.bounds[number], self.bounds[number + 1]
+        starts = self.starts[number] or [low]
+        runs: list[Run] = []
+        for begin, end in zip(starts, [*starts[1:], starts[0]], strict=True):
+            edge = int(self.edges[begin])
+            used.add(edge)
+            second = begin + 1 if begin + 1 < high else low
+            last = end - 1 if end > low else high - 1
+            runs.append(self._run(edge, (begin, second), (end, last)))
+        used.discard(STRAIGHT)
+        result = []
+        for simple in _split_at_pinches(_snapped(runs, network.tolerance)):
+            loop = _to_loop(network, joined(simple, lambda a, b: _continue(network, a, b)))
+            area = loop.area
+            if abs(area) > network.tolerance * sum(map(length, loop.pieces)) / 2:
+                result.append((area, loop))
+        return result
+
+    def _run(self, number: int, begin: tuple[int, int], end: tuple[int, int]) -> Run:
+        """Returns the run along one edge; its ends are given with the vertices of the run beside them."""
+        first, start = self._spot(begin[0])
+        last, stop = self._spot(end[0])
+        if number == STRAIGHT:
+            return Run(None, 0.0, 1.0, start, stop)
+        edge = self.network.edges[number]
+        if first is not None and last is not None and {first, last} == {edge.start, edge.end}:
+            forward = first == edge.start
+            if edge.start == edge.end:
+                forward = int(self.place[begin[1]]) < len(self.network.inner((number, True))) / 2
+            t0, t1 = (edge.t0, edge.t1) if forward else (edge.t1, edge.t0)
+        else:
+            t0, t1 = (self._parameter(edge, vertex, beside) for vertex, beside in (begin, end))
+        return Run(edge.curve, t0, t1, start, stop)
+
+    def _spot(self, vertex: int) -> tuple[int | None, Vec]:
+        """Returns the node at a vertex, if there is one, and its place in millimetres."""
+        if self.owner[vertex] == NODE:
+            node = int(self.place[vertex])
+            return node, self.network.nodes[node]
+        return None, self.network.position(self.vertices[vertex])
+
+    def _parameter(self, edge: Edge, vertex: int, beside: int) -> float:
+        node, p = self._spot(vertex)
+        curve = self.network.curves[edge.curve]
+        if node in (edge.start, edge.end):
+            if edge.start != edge.end:
+                return edge.t0 if node == edge.start else edge.t1
+            # Both ends of the part are here: the one that the vertex beside it is near to.
+            t = curve.nearest(self._spot(beside)[1])
+            return edge.t0 if t < (edge.t0 + edge.t1) / 2 else edge.t1
+        return min(edge.t1, max(edge.t0, curve.nearest(p)))
 
 
 def _touched_node(network: Network, a: int, b: int, p: Vec) -> int | None:
@@ -329,27 +400,6 @@ def _touched_node(network: Network, a: int, b: int, p: Vec) -> int | None:
     return node if is_one and math.dist(curve.point(t), p) <= reach else None
 
 
-def _loops(network: Network, sides: Sides, number: int, used: set[int]) -> list[tuple[float, Loop]]:
-    """Returns the exact loops of a polygon with their areas, without those thinner than the tolerance."""
-    low, high = sides.bounds[number], sides.bounds[number + 1]
-    starts = sides.starts[number] or [low]
-    runs: list[Run] = []
-    for begin, end in zip(starts, [*starts[1:], starts[0]], strict=True):
-        edge = int(sides.edges[begin])
-        used.add(edge)
-        second = begin + 1 if begin + 1 < high else low
-        last = end - 1 if end > low else high - 1
-        runs.append(_run(network, sides, edge, (begin, second), (end, last)))
-    used.discard(STRAIGHT)
-    result = []
-    for simple in _split_at_pinches(_snapped(runs, network.tolerance)):
-        loop = _to_loop(network, joined(simple, lambda a, b: _continue(network, a, b)))
-        area = loop.area
-        if abs(area) > network.tolerance * sum(map(length, loop.pieces)) / 2:
-            result.append((area, loop))
-    return result
-
-
 def _split_at_pinches(runs: list[Run]) -> list[list[Run]]:
     """Returns loops that pass no point twice, of a polygon that may (as a circle in a square does)."""
     if len({run.start for run in runs}) == len(runs):
@@ -366,43 +416,6 @@ def _split_at_pinches(runs: list[Run]) -> list[list[Run]]:
                 del place[passed.start]
             del stack[first:]
     return loops
-
-
-def _run(network: Network, sides: Sides, number: int, begin: tuple[int, int], end: tuple[int, int]) -> Run:
-    """Returns the run along one edge; its ends are given with the vertices of the run beside them."""
-    place = sides.place
-    first, start = _spot(network, sides, begin[0])
-    last, stop = _spot(network, sides, end[0])
-    if number == STRAIGHT:
-        return Run(None, 0.0, 1.0, start, stop)
-    edge = network.edges[number]
-    if first is not None and last is not None and {first, last} == {edge.start, edge.end}:
-        forward = first == edge.start
-        if edge.start == edge.end:
-            forward = int(place[begin[1]]) < len(network.inner((number, True))) / 2
-        t0, t1 = (edge.t0, edge.t1) if forward else (edge.t1, edge.t0)
-    else:
-        t0, t1 = (_parameter(network, sides, edge, vertex, beside) for vertex, beside in (begin, end))
-    return Run(edge.curve, t0, t1, start, stop)
-
-
-def _spot(network: Network, sides: Sides, vertex: int) -> tuple[int | None, Vec]:
-    """Returns the node at a vertex, if there is one, and its place in millimetres."""
-    if sides.owner[vertex] == NODE:
-        node = int(sides.place[vertex])
-        return node, network.nodes[node]
-    return None, network.position(sides.vertices[vertex])
-
-
-def _parameter(network: Network, sides: Sides, edge: Edge, vertex: int, beside: int) -> float:
-    node, p = _spot(network, sides, vertex)
-    if node in (edge.start, edge.end):
-        if edge.start != edge.end:
-            return edge.t0 if node == edge.start else edge.t1
-        # Both ends of the part are here: the one that the vertex beside it is near to.
-        t = network.curves[edge.curve].nearest(_spot(network, sides, beside)[1])
-        return edge.t0 if t < (edge.t0 + edge.t1) / 2 else edge.t1
-    return min(edge.t1, max(edge.t0, network.curves[edge.curve].nearest(p)))
 
 
 def _snapped(runs: list[Run], tolerance: float) -> list[Run]:

@@ -15,7 +15,7 @@ from aidl_lang.solver.dependence import Equations, Redundancy, dependent_rows, r
 from aidl_lang.solver.expression import Bools, Floats, Ints
 from aidl_lang.solver.hierarchy import Riding, groups_riding
 from aidl_lang.solver.linear import DOUBT, RANK, Sparse, each_once, marked, others, places
-from aidl_lang.solver.problem import Problem, Solution
+from aidl_lang.solver.problem import P, Problem, Solution
 from aidl_lang.solver.valuation import LARGE, Sorted, connected, linearise
 
 # --- The motions that leave every equation as it is, as far as a reader can see them.
@@ -351,12 +351,13 @@ class Freedom:
     loose: tuple[int, ...] = ()
 
 
-def analyse(problem: Problem, solution: Solution, order: Sequence[int] | None = None) -> Freedom:
+def analyse(solution: Solution[P], order: Sequence[int] | None = None) -> Freedom:
     """Returns the degrees of freedom that the hard constraints leave which hold, to the first order at the
     solution.
 
     order  of the constraints: of several that depend on each other the latest counts as redundant
     """
+    problem = solution.problem
     hard = np.isnan(problem.weight)
     satisfied = np.array(solution.satisfied, dtype=np.bool_)
     equal = _equal_rows(problem, hard & satisfied, order)

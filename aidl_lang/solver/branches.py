@@ -88,17 +88,16 @@ class Metric:
 
     scale    length of a change that counts as one
     unit     the same without regard to what is kept
-    longest  the largest change in one Newton step, if there is one
+    longest  the largest change in one Newton step
     """
 
     scale: Floats
     unit: Floats
-    longest: Floats | None
+    longest: Floats
 
     def of(self, columns: Sequence[int] | Ints) -> Metric:
         """Returns the units of some unknowns."""
-        longest = None if self.longest is None else self.longest[columns]
-        return Metric(self.scale[columns], self.unit[columns], longest)
+        return Metric(self.scale[columns], self.unit[columns], self.longest[columns])
 
 
 def attempt(task: Task, values: Valuation, metric: Metric, settings: Settings, clock: Clock) -> Verdict:
@@ -295,7 +294,7 @@ class _Attempt:
         row_scale = np.array([row.scale if row else 1.0 for row in rows])
         at_most = np.array([row is None or row.relation is Relation.AT_MOST for row in rows])
         slacks = np.array(softness) if any(softness) else None
-        system = System(program, anchor, scale, row_scale, at_most, slacks, metric.longest, metric.unit)
+        system = System(program, anchor, scale, row_scale, at_most, metric.longest, metric.unit, slacks)
         z = np.zeros(system.size)
         z[: len(scale)] = (np.array([start[unknown] for unknown in program.columns]) - anchor) / scale
         tolerance, iterations = TIGHTER * self.settings.tolerance, self.settings.iterations

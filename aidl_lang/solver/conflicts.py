@@ -207,7 +207,7 @@ class _ConflictSearch:
             start = {}
             for unknown in free:
                 share, here = random.uniform(-1.0, 1.0), self.before[unknown]
-                if problem.longest is not None and np.isfinite(problem.longest[unknown]):
+                if np.isfinite(problem.longest[unknown]):
                     start[unknown] = 180.0 * share
                 elif problem.kept[unknown] and not self.hierarchy.is_spanned[unknown]:
                     start[unknown] = here * 3.0**share

@@ -24,6 +24,7 @@ from aidl_lang.solver.loosening import Scope, Tier, tiers_at
 from aidl_lang.solver.newton import Clock
 from aidl_lang.solver.problem import (
     GroupFailure,
+    P,
     Problem,
     Row,
     Settings,
@@ -297,15 +298,15 @@ class _Mentions(dict[int, frozenset[int]]):
         return found
 
 
-def solve(problem: Problem, settings: Settings = Settings(), memory: Memory | None = None) -> Solution:
+def solve(problem: P, settings: Settings = Settings(), memory: Memory | None = None) -> Solution[P]:
     """Solves `problem` as far as it can be solved. Same input, same output, to the last digit.
 
     With a `memory`, which is brought up to date, only what has changed since its last solve is solved.
     """
-    if settings.stages is Stages.FLAT:
-        problem = replace(problem, holder=np.zeros_like(problem.holder))
-    hierarchy = Hierarchy(problem, settings, Clock(settings.seconds))
-    recollection = None if memory is None else Recollection(memory, problem, settings)
+    is_flat = settings.stages is Stages.FLAT
+    sought = replace(problem, holder=np.zeros_like(problem.holder)) if is_flat else problem
+    hierarchy = Hierarchy(sought, settings, Clock(settings.seconds))
+    recollection = None if memory is None else Recollection(memory, sought, settings)
     with np.errstate(all="ignore"):  # what overflows is found not to hold
         hierarchy.run(recollection)
     violation, rows = hierarchy.violations(), problem.rows
@@ -317,6 +318,7 @@ def solve(problem: Problem, settings: Settings = Settings(), memory: Memory | No
     if recollection is not None:
         recollection.close(hierarchy.stages, status is Status.SOLVED and not hierarchy.failures)
     return Solution(
+        problem,
         status=status,
         values=hierarchy.reached,
         residuals=tuple(residuals.tolist()),
@@ -371,10 +373,9 @@ class Riding:
         one coordinate each is held, which fixes the group's place.
         """
         held: list[int] = []
-        if problem.axis is not None:
-            home = np.where(self.movable & self.carried[problem.group], problem.group, -1)
-            for axis in (0, 1):
-                held += _pinned(np.where(problem.axis == axis, home, -1), jacobian, len(self.carried))
+        home = np.where(self.movable & self.carried[problem.group], problem.group, -1)
+        for axis in (0, 1):
+            held += _pinned(np.where(problem.axis == axis, home, -1), jacobian, len(self.carried))
         return Sparse(np.arange(len(held) + 1), np.array(held, dtype=np.intp), np.ones(len(held)))
 
 
@@ -400,17 +401,16 @@ def groups_riding(problem: Problem) -> Riding:
     movable &= problem.sealed == 0
     carried = ~named.frames & problem.named
     carried[0] = False
-    clinging = problem.clinging or frozenset()
     anchor = np.zeros(len(carried), dtype=np.intp)
     for group, parent in enumerate(problem.parent.tolist()):
         if group:
-            anchor[group] = group if carried[group] and group in clinging else anchor[parent]
+            anchor[group] = group if carried[group] and group in problem.clinging else anchor[parent]
     return Riding(carried, anchor, movable)
 
 
 def _stirred(problem: Problem, named: Naming, movable: Bools) -> Bools:
     """Returns the mask of unknowns drawn by groups only named as a whole that leave their frame."""
-    axis = np.full(len(movable), -1) if problem.axis is None else problem.axis
+    axis = problem.axis
     moved = np.where(movable, problem.frame_of, -1)
     shifts = np.zeros((3, len(named.whole)), dtype=np.bool_)  # along x, along y, anyhow
     for direction in (0, 1):
@@ -470,8 +470,6 @@ def riding_depths(problem: Problem, depths: Ints) -> Ints:
             if parent >= 0:
                 found[group] = found[parent] if frames[group] else depths[group]
     placed: Ints = found[np.where(problem.frame_of >= 0, problem.frame_of, problem.group)]
-    if problem.axis is None or not problem.rigid.any():
-        return placed
     in_rigid = np.where(problem.axis >= 0, np.where(problem.rigid, depths, 0)[problem.group], 0)
     return np.maximum(placed, in_rigid)
 
@@ -542,13 +540,12 @@ class Recollection:
 def subtree_keys(problem: Problem, settings: Settings) -> tuple[int, ...]:
     """Returns a hash for each group (g,) of all that the solution of its subtree depends on."""
     nodes = _node_keys(problem)
-    rows, longest = problem.rows, problem.longest
+    rows = problem.rows
     own: list[list[object]] = [[] for _ in problem.parent]
-    bounds = np.zeros(len(problem.initial)) if longest is None else longest
     # Groups that ride along depend on constraints further up, too.
     riding = riding_depths(problem, depths(problem.parent))
     dearness = (problem.standing, problem.spanned, problem.sealed, riding)
-    columns = (bounds, problem.initial, problem.scale, problem.kept, problem.frame_of, *dearness)
+    columns = (problem.longest, problem.initial, problem.scale, problem.kept, problem.frame_of, *dearness)
     for index, (group, *entry) in enumerate(zip(problem.group.tolist(), *map(_keyed, columns), strict=True)):
         own[group].append((index, *entry))
     holder = problem.holder.tolist()

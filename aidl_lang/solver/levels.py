@@ -272,7 +272,7 @@ class Levels:
         """
         metric, columns = self.metric, program.columns
         origin, scale, row_scale = self.x[columns], metric.scale[columns], self.problem.rows.scale[rows]
-        longest = None if metric.longest is None else metric.longest[columns] / scale
+        longest = metric.longest[columns] / scale
         stacks = list(_stacks(program, of_row, of_column, wanted, self.problem.rows.at_most[rows]))
         x = origin.copy()
         entries: Floats | None = None
@@ -297,7 +297,7 @@ class Levels:
     def _solve_alone(self, program: ArrayProgram, rows: Ints, x: Floats) -> End:
         columns, metric = program.columns, self.metric.of(program.columns)
         scales, at_most = (metric.scale, self.problem.rows.scale[rows]), self.problem.rows.at_most[rows]
-        system = System(program, x[columns], *scales, at_most, None, metric.longest, metric.unit)
+        system = System(program, x[columns], *scales, at_most, metric.longest, metric.unit)
         tolerance, iterations = TIGHTER * self.settings.tolerance, self.settings.iterations
         outcome = newton.solve(system, tolerance, iterations, self.clock, restarts=0)
         if outcome.converged:
@@ -361,7 +361,7 @@ class _Stack:
     def settled(self) -> bool:
         return bool((self.done | self.failed).all())
 
-    def advance(self, residuals: Floats, entries: Floats, tolerance: float, limit: Floats | None) -> None:
+    def advance(self, residuals: Floats, entries: Floats, tolerance: float, limit: Floats) -> None:
         """Takes one step of each unsettled system, from the residuals and derivatives at its place."""
         b, m = self.rows.shape
         k = self.columns.shape[1]
@@ -393,10 +393,9 @@ class _Stack:
             self._approach(moving & ~self.polishing, point, squares, limit)
             self._polish(moving & self.polishing, point, jacobian)
 
-    def _approach(self, which: Bools, step: Floats, squares: Floats, limit: Floats | None) -> None:
-        if limit is not None:
-            excess = (np.abs(step) / limit[self.columns]).max(axis=1)
-            self.failed |= which & (excess > 1.0)
+    def _approach(self, which: Bools, step: Floats, squares: Floats, limit: Floats) -> None:
+        excess = (np.abs(step) / limit[self.columns]).max(axis=1)
+        self.failed |= which & (excess > 1.0)
         self.z = np.where(which[:, None], self.z + step, self.z)
         self.promised = np.where(which, (1.0 - GAIN) * squares, self.promised)
 

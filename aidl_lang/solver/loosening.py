@@ -369,10 +369,10 @@ class _Loosening:
         """Returns the class of an unknown: its tier, and in that first what moves, then what stretches.
         Within parts sizes that are free to change come before both.
         """
-        tier, axis = self.tiers.tier(unknown), self.hierarchy.problem.axis
+        tier = self.tiers.tier(unknown)
         if self.hierarchy.is_kept[unknown]:
             return tier, 2
-        return tier, int(tier < DEEP or axis is None or axis[unknown] >= 0)
+        return tier, int(tier < DEEP or self.hierarchy.problem.axis[unknown] >= 0)
 
     @staticmethod
     def _grouped(columns: list[int], name: Callable[[int], tuple[str, int]]) -> list[list[int]]:

@@ -107,6 +107,8 @@ class System:
     scale      (k,) unit of each unknown
     row_scale  (r,) unit of each row
     inequality (r,) True for `<= 0`
+    longest    (k,) the largest change in one step
+    unit       (k,) unit of each unknown without regard to what is kept
     softness   (r,) None, or the unit of a slack that is added to each row; 0 for hard rows. The slacks are
                further unknowns of the system, behind the others: dear ones, which is what makes a row soft.
     """
@@ -118,13 +120,13 @@ class System:
         scale: Floats,
         row_scale: Floats,
         inequality: NDArray[np.bool_],
+        longest: Floats,
+        unit: Floats,
         softness: Floats | None = None,
-        longest: Floats | None = None,
-        unit: Floats | None = None,
     ) -> None:
         slacks = 0 if softness is None else int(np.count_nonzero(softness > 0.0))
-        self.longest = None if longest is None else np.append(longest / scale, np.full(slacks, np.inf))
-        self.stretch = np.append(np.ones(len(scale)) if unit is None else unit / scale, np.ones(slacks))
+        self.longest = np.append(longest / scale, np.full(slacks, np.inf))
+        self.stretch = np.append(unit / scale, np.ones(slacks))
         self.program, self.origin, self.scale, self.inequality = program, origin, scale, inequality
         self.linear = program.linear
         self._has_inequalities = bool(inequality.any())
@@ -198,8 +200,6 @@ def _turned(system: System) -> Iterator[Floats]:
     """Yields starts at which one of the directions among the unknowns is turned round: on the way there a
     length would have to shrink to nothing, and no search goes on from that.
     """
-    if system.longest is None:
-        return
     turning = np.flatnonzero(np.isfinite(system.longest))
     for at in turning[:TURNED].tolist():
         start = np.zeros(system.size)
@@ -336,10 +336,7 @@ class _Newton:
 
     def _bounded(self, step: Floats) -> tuple[Floats, float]:
         """Returns the step, or its greatest share that moves no unknown too far at once, and that share."""
-        longest = self.system.longest
-        if longest is None:
-            return step, 1.0
-        excess = float((np.abs(step) / longest).max(initial=0.0))
+        excess = float((np.abs(step) / self.system.longest).max(initial=0.0))
         return (step, 1.0) if excess <= 1.0 else (step / excess, 1.0 / excess)
 
     def _try(self, z: Floats, step: Floats, merit: float, predicted: float) -> tuple[Floats, Floats] | None:

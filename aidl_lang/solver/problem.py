@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import field, replace
 from enum import StrEnum
 from functools import cached_property
-from typing import Any
+from typing import Any, Generic, Self, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -88,10 +88,9 @@ class Problem:
     group    (n,) the group that owns each unknown
     frame_of (n,) for a translation of a group's frame, that group; else -1. A frame's unknowns are owned by
              the parent of the group they move.
-    axis     (n,) 0 for a coordinate of a place along x in its group's frame, 1 along y, -1 for anything else;
-             None where that is not known
+    axis     (n,) 0 for a coordinate of a place along x in its group's frame, 1 along y, -1 for anything else
     longest  (n,) the largest change of each unknown in one Newton step: a sixth of a turn for an angle, so
-             that it does not spin near a singular place; infinite for others; None for no limit
+             that it does not spin near a singular place; infinite for others
     parent   (g,) parent of each group, -1 for the root, which is group 0; parents come before children
     holder   (c,) the group that holds each constraint
     weight   (c,) NaN for a hard constraint, else the weight of the preference
@@ -109,7 +108,7 @@ class Problem:
     thing    (n,) the same number for unknowns that are one thing to move, as the coordinates of a point:
              as few things as can be found are moved. If all are one, what is nearest is sought and no more.
     clinging the groups that belong to what is drawn around them, in which no freedom is told where they ride
-             along; None where that is not known
+             along
     observables: (group, tape node) for each coordinate that a reader of the drawing could see move, in the
              root's frame: degrees of freedom are counted on these, so that a frame and its contents
              moving against each other do not count.
@@ -129,23 +128,26 @@ class Problem:
     whole: NDArray[np.intp]
     inside: NDArray[np.intp]
     named: bool = False
-    axis: NDArray[np.intp] | None = None
-    longest: Floats | None = None
+    axis: NDArray[np.intp] = field(default_factory=lambda: np.zeros(0, dtype=np.intp))
+    longest: Floats = field(default_factory=lambda: np.zeros(0))
     standing: NDArray[np.bool_] = field(default_factory=lambda: np.zeros(0, dtype=np.bool_))
     spanned: NDArray[np.bool_] = field(default_factory=lambda: np.zeros(0, dtype=np.bool_))
     rigid: NDArray[np.bool_] = field(default_factory=lambda: np.zeros(0, dtype=np.bool_))
     sealed: NDArray[np.intp] = field(default_factory=lambda: np.zeros(0, dtype=np.intp))
     thing: NDArray[np.intp] = field(default_factory=lambda: np.zeros(0, dtype=np.intp))
-    clinging: frozenset[int] | None = None
+    clinging: frozenset[int] = frozenset()
     observables: tuple[tuple[int, int], ...] = ()
     names: tuple[str, ...] = field(default=(), repr=False)
 
     def __post_init__(self) -> None:
-        """Fills in what is not given: nothing stands, nothing is rigid, and all unknowns are one thing."""
-        for name in ("standing", "spanned", "rigid", "sealed", "thing"):
+        """Fills in what is not given: nothing is a place along an axis, stands, or is rigid, steps have no
+        limit, and all unknowns are one thing.
+        """
+        for name in ("axis", "longest", "standing", "spanned", "rigid", "sealed", "thing"):
             given, wanted = getattr(self, name), len(self.parent if name == "rigid" else self.initial)
             if len(given) != wanted:
-                object.__setattr__(self, name, np.zeros(wanted, dtype=given.dtype))
+                value = {"axis": -1, "longest": np.inf}.get(name, 0)
+                object.__setattr__(self, name, np.full(wanted, value, dtype=given.dtype))
 
     @cached_property
     def constraints(self) -> tuple[Constraint, ...]:
@@ -169,7 +171,7 @@ class Problem:
             for i, (holder, weight) in enumerate(zip(self.holder.tolist(), self.weight.tolist(), strict=True))
         )
 
-    def with_constraints(self, constraints: Sequence[Constraint]) -> Problem:
+    def with_constraints(self, constraints: Sequence[Constraint]) -> Self:
         """Returns the problem with other constraints on the same unknowns."""
         return replace(self, **constraint_arrays(constraints))
 
@@ -319,9 +321,13 @@ class StageReport:
     """The constraints that no search from the first guesses satisfied, where one from elsewhere did."""
 
 
+P = TypeVar("P", bound=Problem)
+
+
 @record()
-class Solution:
+class Solution(Generic[P]):
     """
+    problem        what was solved
     values         (n,) solved unknowns
     residuals      per constraint, the largest violation of its rows (0 for an inequality that holds),
                    evaluated on the original expressions at `values`, in the units of the row
@@ -330,6 +336,7 @@ class Solution:
     stages         the stages tried, in order
     """
 
+    problem: P
     status: Status
     values: Floats
     residuals: tuple[float, ...]

@@ -34,7 +34,7 @@ class Attempt:
     """One run."""
 
     problem: Problem
-    solution: Solution | None = None
+    solution: Solution[Problem] | None = None
 
 
 class Ours(Contestant):
@@ -51,7 +51,7 @@ class Ours(Contestant):
 
     def analyse(self, built: Attempt) -> bool:
         assert built.solution is not None
-        analyse(built.problem, built.solution)
+        analyse(built.solution)
         return True
 
     def read(self, built: Attempt) -> list[float]:

@@ -134,11 +134,7 @@ def compare(source: SourceFile, world: World | None = None, thing: str = "") -> 
 @dataclass(frozen=True)
 class _Built:
     model: Model
-    lowered: Lowered
-
-    @property
-    def problem(self) -> Problem:
-        return self.lowered.problem
+    problem: Lowered
 
     def is_other(self, one: _Built) -> bool:
         """Tells whether what is to hold is not the same."""
@@ -179,15 +175,15 @@ def _carried(values: Floats, built: _Built, meant: _Built) -> Floats:
     both in the same order, as what it builds hangs on no comparison of boxes.
     """
     at = {unknown: number for number, unknown in enumerate(built.model.unknowns)}
-    known = {at[u]: value for u, value in zip(built.lowered.unknowns, values.tolist(), strict=True)}
+    known = {at[u]: value for u, value in zip(built.problem.unknowns, values.tolist(), strict=True)}
     order = {unknown: number for number, unknown in enumerate(meant.model.unknowns)}
-    return np.array([known.get(order[u], u.guess) for u in meant.lowered.unknowns])
+    return np.array([known.get(order[u], u.guess) for u in meant.problem.unknowns])
 
 
 def _measured(solved: Solved, meant: _Built, values: Floats) -> Solved:
     problem = meant.problem
     change = (values - problem.initial) / problem.scale
-    before, after = Evaluator({}), Evaluator(dict(zip(meant.lowered.unknowns, values.tolist(), strict=True)))
+    before, after = Evaluator({}), Evaluator(problem.by_unknown(values))
     drawn = [(was, _drawn(s, after)) for s in meant.model.root.walk() if len((was := _drawn(s, before))[0])]
     return replace(
         solved,

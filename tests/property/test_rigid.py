@@ -12,10 +12,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from aidl_lang import pipeline
-from aidl_lang.building.lower import Lowered, lower
+from aidl_lang.building.lower import Lowered, Solved, lower
 from aidl_lang.common.source import SourceFile
 from aidl_lang.interp import interpret
-from aidl_lang.solver import Settings, Solution, Status, solve
+from aidl_lang.solver import Settings, Status, solve
 from aidl_lang.solver.conflicts import nearby_solution
 from tests.amount import tries
 
@@ -71,18 +71,16 @@ def picture(seed: int, most: int = 5) -> tuple[str, int]:
     return "\n".join([*lines, "constrain {", *stated, "}", "}"]), beams
 
 
-def solved(text: str) -> tuple[Lowered, Solution]:
+def solved(text: str) -> Solved:
     program, _ = pipeline.front(SourceFile("a.aidl", text))
-    lowered = lower(interpret(program).model)
-    return lowered, solve(lowered.problem)
+    return solve(lower(interpret(program).model))
 
 
-def moved_inside(lowered: Lowered, values: list[float]) -> set[str]:
+def moved_inside(solution: Solved) -> set[str]:
     """Returns the parts in which something moved against their frame."""
     found = set()
-    for unknown, before, after in zip(
-        lowered.unknowns, lowered.problem.initial.tolist(), values, strict=True
-    ):
+    problem = solution.problem
+    for unknown, before, after in zip(problem.unknowns, problem.initial, solution.values, strict=True):
         part = unknown.path.split(".")[1]
         is_frame = unknown.frame_of is not None and unknown.frame_of.path == f"a.{part}"
         if not is_frame and abs(before - after) > MOVED:
@@ -96,15 +94,14 @@ def cost(parts: Collection[str]) -> tuple[int, int]:
     return len(parts) - beams, beams
 
 
-def least_inside(lowered: Lowered, parts: list[str]) -> tuple[int, int]:
+def least_inside(problem: Lowered, parts: list[str]) -> tuple[int, int]:
     """Returns the least cost of parts whose inside has to move, by trying all sets of them."""
-    problem = lowered.problem
     hard = range(len(problem.holder))
     sets = [chosen for count in range(len(parts) + 1) for chosen in combinations(parts, count)]
     for chosen in sorted(sets, key=cost):
         start = {
             i: float(problem.initial[i])
-            for i, u in enumerate(lowered.unknowns)
+            for i, u in enumerate(problem.unknowns)
             if (u.frame_of is not None and u.frame_of.path.count(".") == 1)
             or (u.path.split(".")[1] in chosen and not u.kept)
         }
@@ -117,15 +114,15 @@ def least_inside(lowered: Lowered, parts: list[str]) -> tuple[int, int]:
 @tries(240)
 def test_parts_move_whole(seed: int) -> None:
     text, beams = picture(seed)
-    lowered, solution = solved(text)
+    solution = solved(text)
     assert solution.status is Status.SOLVED
-    assert moved_inside(lowered, solution.values.tolist()) == {f"beam{i}" for i in range(beams)}
+    assert moved_inside(solution) == {f"beam{i}" for i in range(beams)}
 
 
 @given(st.integers(0, 1_000_000))
 @tries(100)
 def test_as_few_parts_as_possible_change_inside(seed: int) -> None:
     text, _ = picture(seed, most=3)
-    lowered, solution = solved(text)
-    parts = sorted({u.path.split(".")[1] for u in lowered.unknowns})
-    assert cost(moved_inside(lowered, solution.values.tolist())) == least_inside(lowered, parts)
+    solution = solved(text)
+    parts = sorted({u.path.split(".")[1] for u in solution.problem.unknowns})
+    assert cost(moved_inside(solution)) == least_inside(solution.problem, parts)

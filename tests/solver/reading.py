@@ -58,9 +58,7 @@ class _Reading:
         tags = [self._constraint(i, _member(each)) for i, each in enumerate(form.get("constraints", []))]
         for each in map(_member, form.get("observed", [])):
             self.model.observe(self.groups[each.get("group", "root")], self._lift(self._value(each["is"])))
-        problem = replace(self.model.problem(), names=names)
-        if np.isfinite(self.longest).any():
-            problem = replace(problem, longest=np.array(self.longest))
+        problem = replace(self.model.problem(), names=names, longest=np.array(self.longest))
         return Case(problem, form["about"], tuple(tags), form["expected"])
 
     def _unknown(self, name: str, entry: dict[str, Any]) -> None:

@@ -64,7 +64,7 @@ def _check_constraints(case: Case, solution: Solution) -> None:
 
 def _check_expected(case: Case, solution: Solution) -> None:
     expected, names = case.expected, case.problem.names
-    freedom = analyse(case.problem, solution)
+    freedom = analyse(solution)
     found = dict(zip(names, solution.values.tolist(), strict=True))
     for name, value in expected.get("values", {}).items():
         assert found[name] == pytest.approx(value, rel=0, abs=expected.get("tolerance", 1e-6)), name

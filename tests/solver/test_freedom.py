@@ -150,7 +150,7 @@ def assert_explained(problem: Problem, freedom: Freedom, slopes: np.ndarray) -> 
 @tries(60)
 def test_counts_motions_and_reasons_are_those_of_the_dense_matrices(seed: int) -> None:
     _, problem = random_problem(seed)
-    freedom = analyse(problem, solve(problem))
+    freedom = analyse(solve(problem))
     with only_clear_ones():
         assert_right(problem, freedom, problem.initial)
 
@@ -160,11 +160,11 @@ def test_counts_motions_and_reasons_are_those_of_the_dense_matrices(seed: int) -
 def test_sparse_elimination_says_the_same(seed: int) -> None:
     _, problem = random_problem(seed, 4)
     solution = solve(problem)
-    small = analyse(problem, solution)
+    small = analyse(solution)
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(mobility, "LARGE", 0)
         patch.setattr(dependence, "LARGE", 0)
-        large = analyse(problem, solution)
+        large = analyse(solution)
     with only_clear_ones():
         assert_right(problem, large, problem.initial)
     assert large.free == small.free
@@ -174,11 +174,11 @@ def test_sparse_elimination_says_the_same(seed: int) -> None:
 # ---- large models -----------------------------------------------------------------------------------
 
 
-def unsolved(m: Model) -> tuple[Problem, Solution]:
-    """A problem that holds where it is written, with that as its solution."""
+def unsolved(m: Model) -> Solution[Problem]:
+    """Where a problem holds as it is written, as its solution."""
     problem = m.problem()
     count = len(problem.constraints)
-    return problem, Solution(Status.SOLVED, problem.initial, (0.0,) * count, (True,) * count, (), (), ())
+    return Solution(problem, Status.SOLVED, problem.initial, (0.0,) * count, (True,) * count, (), (), ())
 
 
 def bars(places: np.ndarray, ends: list[tuple[int, int]], groups: int = 1) -> tuple[Model, np.ndarray]:
@@ -215,19 +215,18 @@ def frame_of_bars(columns: int, rows: int = 2, extra: float = 0.0) -> tuple[Mode
 )
 def test_a_large_frame_of_bars(columns: int, rows: int, extra: float) -> None:
     m, slopes = frame_of_bars(columns, rows, extra)
-    problem, solution = unsolved(m)
-    count = len(problem.initial)
+    solution = unsolved(m)
+    count = len(solution.values)
     assert count > valuation.LARGE
-    freedom = analyse(problem, solution)
-    assert_right_for(problem, freedom, slopes, np.eye(count), np.ones(count, dtype=bool))
+    freedom = analyse(solution)
+    assert_right_for(solution.problem, freedom, slopes, np.eye(count), np.ones(count, dtype=bool))
     assert freedom.degrees == 3
     assert len(freedom.redundant) == len(slopes) - count + 3
 
 
 def test_a_large_chain_has_too_many_motions_to_list() -> None:
     places = np.stack((10.0 * np.arange(200), np.random.default_rng(0).uniform(-5, 5, 200)), axis=1)
-    problem, solution = unsolved(bars(places, list(pairwise(range(200))), 40)[0])
-    freedom = analyse(problem, solution)
+    freedom = analyse(unsolved(bars(places, list(pairwise(range(200))), 40)[0]))
     assert freedom.degrees == 201
     assert freedom.group_degrees == (0,) + (6,) * 40
     assert freedom.free == tuple(range(400))
@@ -240,15 +239,14 @@ def test_a_long_circle_of_sums_is_explained_and_a_distance_that_says_more_is_not
     steps = [m.equal(q[0] - p[0] - 10.0) for p, q in pairwise(at)]
     m.equal(distance(at[0], at[-1]) - 3990.0)
     around = m.equal(at[-1][0] - at[0][0] - 3990.0)
-    freedom = analyse(*unsolved(m))
+    freedom = analyse(unsolved(m))
     assert redundant(freedom) == {around: tuple(steps)}
     assert freedom.degrees == 401
 
 
 def test_too_many_reasons_are_not_told_but_motions_are_counted() -> None:
     m, slopes = frame_of_bars(20, 20)
-    problem, solution = unsolved(m)
-    freedom = analyse(problem, solution)
+    freedom = analyse(unsolved(m))
     assert (freedom.degrees, freedom.redundant) == (3, ())
     assert freedom.undecided == ()
     # All but what hangs on by two bars that nothing else could replace.
@@ -261,7 +259,7 @@ def test_what_is_too_close_to_call_is_not_guessed() -> None:
     m.equal(y)
     m.equal(y - x * 1e-7)
     m.equal(z)
-    freedom = analyse(problem := m.problem(), solve(problem))
+    freedom = analyse(solve(m.problem()))
     assert (freedom.degrees, freedom.group_degrees, freedom.undecided) == (None, (None,), ((0, 1),))
     assert freedom.redundant == ()
 
@@ -273,10 +271,9 @@ def test_a_large_one_is_undecided_as_well() -> None:
     m.equal(y - x * 1e-7)
     m.equal(y)
     m.equal(x - first + m.initial[0] + y)
-    problem, solution = unsolved(m)
-    freedom = analyse(problem, solution)
+    freedom = analyse(solution := unsolved(m))
     assert freedom.degrees is None
-    assert freedom.undecided == (tuple(range(len(problem.initial))),)
+    assert freedom.undecided == (tuple(range(len(solution.values))),)
 
 
 def test_small_models_do_without_scipy() -> None:
@@ -284,7 +281,7 @@ def test_small_models_do_without_scipy() -> None:
         "import sys; from tests.solver.build import Model, distance; from aidl_lang.solver import solve;"
         "from aidl_lang.solver.analysis import analyse; m = Model(); a, b = m.point(0, 0), m.point(3, 4);"
         "m.equal(distance(a, b) - 5.0); m.equal(distance(b, a) - 5.0); p = m.problem();"
-        "f = analyse(p, solve(p)); assert (f.degrees, len(f.redundant)) == (3, 1), f;"
+        "f = analyse(solve(p)); assert (f.degrees, len(f.redundant)) == (3, 1), f;"
         "assert 'scipy' not in sys.modules"
     )
     subprocess.run([sys.executable, "-c", program], check=True)
@@ -304,10 +301,10 @@ def test_large_models_take_about_linear_time(kind: str) -> None:
                 group = m.group()
                 p, q = m.point(0, 0, group), m.point(3, 4, group)
                 m.equal(distance(p, q) - 5.0, group=group)
-        problem, solution = unsolved(m)
-        analyse(problem, solution)
+        solution = unsolved(m)
+        analyse(solution)
         start = time.process_time()
-        freedom = analyse(problem, solution)
+        freedom = analyse(solution)
         seconds.append(time.process_time() - start)
         assert freedom.degrees == (3 if kind == "one part" else 3 * size)
     assert seconds[1] < 10 * seconds[0]

@@ -235,7 +235,7 @@ def test_a_copy_changes_nothing_but_the_note(sketch: Sketch, data: st.DataObject
     plain, more = solve(problem), solve(copies)
     assert_same(more.values, plain.values, EXACTLY)
     assert more.status == plain.status
-    before, after = analyse(problem, plain), analyse(copies, more)
+    before, after = analyse(plain), analyse(more)
     assert after.degrees == before.degrees
     redundant = {found.constraint for found in after.redundant}
     assert redundant >= {found.constraint for found in before.redundant}
@@ -248,13 +248,13 @@ def test_a_copy_changes_nothing_but_the_note(sketch: Sketch, data: st.DataObject
 @given(regular(replace(INEQUALITIES, groups=2)), st.data())
 @profile(50)
 def test_an_inequality_with_room_to_spare_changes_nothing(sketch: Sketch, data: st.DataObject) -> None:
-    plain = solve(problem := sketch.problem())
+    plain = solve(sketch.problem())
     loose = [replace(data.draw(links(sketch, EQUATIONS)), sense="<=", room=100.0) for _ in range(2)]
-    more = solve(tightened := sketch.with_links(loose).problem())
+    more = solve(sketch.with_links(loose).problem())
     assert more.values.tobytes() == plain.values.tobytes()
     assert more.status == plain.status
     if not sketch.groups:  # a frame that is mentioned counts as free
-        before, after = analyse(problem, plain), analyse(tightened, more)
+        before, after = analyse(plain), analyse(more)
         assert (after.degrees, after.free) == (before.degrees, before.free)
 
 
@@ -346,7 +346,7 @@ def test_degrees_of_freedom_are_unknowns_less_rank(sketch: Sketch) -> None:
     assume(is_regular(problem, solution.values, free))
     equations = [row for c in problem.constraints for row in c.rows if row.relation == "="]
     matrix = jacobian(problem, [row.expression for row in equations], solution.values)[:, free]
-    assert analyse(problem, solution).degrees == int(free.sum()) - np.linalg.matrix_rank(matrix, tol=1e-5)
+    assert analyse(solution).degrees == int(free.sum()) - np.linalg.matrix_rank(matrix, tol=1e-5)
 
 
 # ---- determinism ----------------------------------------------------------------------------------------

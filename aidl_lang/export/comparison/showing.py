@@ -25,12 +25,11 @@ from aidl_lang.export.comparison.changes import (
     Version,
 )
 from aidl_lang.export.marks import Area, Curves, Group, Ink, Mark, Picture, Text, corners, polygon, widened
-from aidl_lang.geometry.boolean import Contact
+from aidl_lang.geometry.boolean import Contact, combined
 from aidl_lang.geometry.curves import Bounds, Line, Piece, Vec, larger_side, union_bounds
 from aidl_lang.geometry.drawing import Stroke
-from aidl_lang.geometry.network import Network, with_finer_chords
 from aidl_lang.geometry.region import Face, Region, measure
-from aidl_lang.geometry.sections import filled, trace_all, union
+from aidl_lang.geometry.sections import Section, union
 
 # --- As text.
 
@@ -311,20 +310,12 @@ def overlay(comparison: Comparison) -> Picture:
 
 def parts(before: Sequence[Region], after: Sequence[Region]) -> dict[str, Region]:
     """Returns the exact regions covered in both versions, only before, only after."""
-    pieces = [p for region in (*before, *after) for loop in region.loops for p in loop.pieces]
-    if not pieces:
-        return dict.fromkeys(FILLS, Region())
 
-    def traced(network: Network) -> list[Region]:
-        sections, number = [], 0
-        for region in (*before, *after):
-            sections.append(filled(network, [loop.pieces for loop in region.loops], number))
-            number += sum(len(loop.pieces) for loop in region.loops)
+    def areas(*sections: Section) -> Sequence[Section]:
         first, last = union(sections[: len(before)]), union(sections[len(before) :])
-        wanted = [first & last, first - last, last - first]
-        return [outline.region for outline in trace_all(network, wanted)]
+        return first & last, first - last, last - first
 
-    return dict(zip(FILLS, with_finer_chords(Network(pieces), traced), strict=True))
+    return dict(zip(FILLS, combined([*before, *after], areas), strict=True))
 
 
 def _box(*versions: Version) -> Bounds:

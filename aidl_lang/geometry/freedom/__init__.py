@@ -20,7 +20,7 @@ from typing import TypeAlias
 import numpy as np
 
 from aidl_lang.building.expression import DEGREE, quoted
-from aidl_lang.building.lower import Lowered
+from aidl_lang.building.lower import Solved
 from aidl_lang.building.model import Model
 from aidl_lang.common.prose import counted, listed, short
 from aidl_lang.common.records import record
@@ -42,7 +42,6 @@ from aidl_lang.geometry.freedom.scene import (
 from aidl_lang.geometry.solved import Motion, SolvedModel
 from aidl_lang.solver.analysis import Freedom, Part
 from aidl_lang.solver.linear import each_once, scattered
-from aidl_lang.solver.problem import Solution
 from aidl_lang.solver.valuation import connected
 
 # --- The motions possible in one part of a model, and the names of what moves.
@@ -448,14 +447,14 @@ _LEAVING = {"slide": "slide along a curve that begins along {}", "turn": "turn"}
 """Words for a motion that does not go on as it begins."""
 
 
-def motions(model: Model, lowered: Lowered, solution: Solution, freedom: Freedom) -> tuple[Motion, ...]:
+def motions(model: Model, solution: Solved, freedom: Freedom) -> tuple[Motion, ...]:
     """Returns independent motions of a model, the most interesting first, those of the whole drawing last.
     Structures come before geometry, geometry before points and numbers; of these the large before the small,
     and equals in the order of the text.
     """
     if not freedom.motions.found:
         return ()
-    scene = Scene(model, lowered, freedom.motions, Bending(lowered.problem, solution))
+    scene = Scene(model, solution.problem, freedom.motions, Bending(solution))
     tellings = [_Telling(scene, part) for part in freedom.motions.parts]
     whole = list(_own_place(scene, tellings, model.root.path))
     found = [told for telling in tellings[:MOST] for told in telling.motions()]

@@ -10,13 +10,12 @@ import numpy as np
 
 from aidl_lang.building.curves import DIRECTIONS
 from aidl_lang.building.expression import DEGREE
-from aidl_lang.building.lower import Lowered, seen
+from aidl_lang.building.lower import Lowered, Solved, seen
 from aidl_lang.building.model import Constraint, Geometry, Model, Structure
 from aidl_lang.common.records import record
 from aidl_lang.geometry.curves import Floats, Ints, Mask
 from aidl_lang.solver.analysis import Motions, Part
 from aidl_lang.solver.linear import Sparse, each_once, scattered
-from aidl_lang.solver.problem import Problem, Solution
 from aidl_lang.solver.valuation import Valuation, linearise
 
 # --- Tests whether a motion goes on as it begins: a slide along a line may be the first of a way around
@@ -39,8 +38,9 @@ WORK = 2_000_000
 class Bending:
     """The bends of the equations that hold, and of the observables of a problem, along a motion."""
 
-    def __init__(self, problem: Problem, solution: Solution) -> None:
-        self.problem, self.at = problem, np.asarray(solution.values, dtype=np.float64)
+    def __init__(self, solution: Solved) -> None:
+        problem = self.problem = solution.problem
+        self.at = np.asarray(solution.values, dtype=np.float64)
         rows = problem.rows
         holding = np.isnan(problem.weight) & np.array(solution.satisfied, dtype=np.bool_)
         equal = np.flatnonzero(holding[rows.constraint] & ~rows.at_most)
@@ -163,7 +163,7 @@ class Scene:
         self.things: list[Thing] = []
         self.known: dict[str, Thing] = {}
         structures = list(model.root.walk())
-        counts = np.bincount([group for group, _ in lowered.problem.observables], minlength=len(structures))
+        counts = np.bincount([group for group, _ in lowered.observables], minlength=len(structures))
         starts = np.concatenate(([0], np.cumsum(counts))).tolist()
         for number, s in enumerate(structures):
             stop = starts[number + sum(1 for _ in s.walk())]
@@ -201,10 +201,10 @@ class Scene:
             at += len(numbers)
         for geometry, (first, last) in ranges.items():
             self._add(geometry.path, first, last, GEOMETRY)
-        problem = self.lowered.problem
+        lowered = self.lowered
         for variable in range(at, stop):
-            node = problem.observables[variable][1]
-            self.number[variable] = self.lowered.unknowns[int(problem.tape.operands[node, 0])].path
+            node = lowered.observables[variable][1]
+            self.number[variable] = lowered.unknowns[int(lowered.tape.operands[node, 0])].path
 
 
 # --- The things against which a thing moves: those that constraints relate it to, and those beside it.

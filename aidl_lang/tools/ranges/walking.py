@@ -333,7 +333,7 @@ class Walker:
     def _problem(self, value: float) -> Problem | None:
         """Returns the problem at the nearest value of the range; None if the program is wrong there."""
         built = self.compiled(min(max(value, self.low), self.high)).built
-        return None if built is None else lower(built).problem
+        return None if built is None else lower(built)
 
     def _is_stated(self, a: float, b: float) -> bool:
         """Tells whether a number that the program states jumps as well: a rounded one, or a choice."""

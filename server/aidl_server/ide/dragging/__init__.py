@@ -398,11 +398,11 @@ def _pulled(hold: _Hold, grip: Grip, to: Vec, step: float) -> Dragged:
         more.append(mobility.pull(hold.built, pin, AXES, pin.at(hold.evaluate), None))
     lowered = lower(replace(hold.built, constraints=[*hold.built.constraints, *more]))
 
-    def off(found: tuple[Solution, Vec]) -> float:
+    def off(found: tuple[Solution[Lowered], Vec]) -> float:
         x, y = found[1][0] - to[0], found[1][1] - to[1]
         return max(abs(u * x + v * y) for u, v in way.directions)
 
-    found: list[tuple[Solution, Vec]] = []
+    found: list[tuple[Solution[Lowered], Vec]] = []
     for loose in (hold.written, hold.movable):
         if (each := _solved(hold, lowered, grip, sizes, loose)) is not None:
             found.append(each)
@@ -412,7 +412,7 @@ def _pulled(hold: _Hold, grip: Grip, to: Vec, step: float) -> Dragged:
         raise CannotError(f"`{_name(grip)}` cannot go there: the constraints would not hold")
     solution, at = min(found, key=lambda each: round(off(each), 6))
     try:
-        shown = pipeline.redrawn(hold.outcome, lowered, solution)
+        shown = pipeline.redrawn(hold.outcome, solution)
     except TooLongError as reason:
         raise CannotError(str(reason)) from None
     dragged = replace(hold.view, outcome=shown, drawn=shown)
@@ -421,22 +421,22 @@ def _pulled(hold: _Hold, grip: Grip, to: Vec, step: float) -> Dragged:
 
 def _solved(
     hold: _Hold, lowered: Lowered, grip: Grip, sizes: AbstractSet[Unknown], loose: AbstractSet[Unknown]
-) -> tuple[Solution, Vec] | None:
+) -> tuple[Solution[Lowered], Vec] | None:
     """Returns the nearest solution that changes only `loose` unknowns and the sizes to change, and the
     point's place. All is solved at once, since it all holds as it is. With sizes, positions only follow.
     """
-    problem, at = lowered.problem, mobility.values_at(lowered, hold.evaluate)
-    resized, said = _are(lowered, sizes), _are(lowered, hold.written) & ~problem.kept
-    free = resized | (_are(lowered, loose) & ~problem.kept)
+    at = mobility.values_at(lowered, hold.evaluate)
+    resized, said = _are(lowered, sizes), _are(lowered, hold.written) & ~lowered.kept
+    free = resized | (_are(lowered, loose) & ~lowered.kept)
     flat = replace(
-        problem,
+        lowered,
         initial=at,
-        scale=np.where(resized if sizes else said, 1.0, _DEAR) * problem.scale,
+        scale=np.where(resized if sizes else said, 1.0, _DEAR) * lowered.scale,
         kept=~free,
         group=np.zeros(len(at), dtype=np.intp),
         frame_of=np.full(len(at), -1),
         parent=np.array([-1]),
-        holder=np.zeros_like(problem.holder),
+        holder=np.zeros_like(lowered.holder),
         named=False,
         standing=_are(lowered, frozenset()),
         spanned=_are(lowered, frozenset()),
@@ -444,12 +444,12 @@ def _solved(
         observables=(),
     )
     solution = solve(flat, _SETTINGS)
-    place = grip.at(Evaluator(dict(zip(lowered.unknowns, solution.values.tolist(), strict=True))))
+    place = grip.at(Evaluator(lowered.by_unknown(solution.values)))
     if solution.status is not Status.SOLVED or not is_somewhere(place):
         return None
     guessed = np.array([u.guess for u in lowered.unknowns])
-    changed = problem.kept & (np.abs(solution.values - guessed) > _CHANGED * problem.scale)
-    return replace(solution, changed=tuple(np.flatnonzero(changed).tolist())), place
+    changed = lowered.kept & (np.abs(solution.values - guessed) > _CHANGED * lowered.scale)
+    return replace(solution, problem=lowered, changed=tuple(np.flatnonzero(changed).tolist())), place
 
 
 def _are(lowered: Lowered, unknowns: AbstractSet[Unknown]) -> NDArray[np.bool_]:

@@ -214,24 +214,23 @@ class _Scene:
         written: AbstractSet[Unknown],
         movable: AbstractSet[Unknown],
     ) -> None:
-        problem, rows = lowered.problem, lowered.problem.rows
-        self.unknowns = lowered.unknowns
+        rows, self.unknowns = lowered.rows, lowered.unknowns
         self.grips = list(wishes)
         at = values_at(lowered, evaluate)
         with np.errstate(all="ignore"):
-            far = violations(problem, Schedule(problem.tape).evaluate(at))
+            far = violations(lowered, Schedule(lowered.tape).evaluate(at))
         number = {stated: index for index, stated in enumerate(lowered.stated) if stated is not None}
         of_row = rows.constraint
         first = np.searchsorted(of_row, [number[wish] for wish in wishes.values()])
-        holding = np.isnan(problem.weight)[of_row] & ~rows.at_most & (far <= _HOLDS * rows.scale)
+        holding = np.isnan(lowered.weight)[of_row] & ~rows.at_most & (far <= _HOLDS * rows.scale)
         equal = np.flatnonzero(holding)
         points = np.stack((first, first + 1), axis=1).ravel()
         self.is_written = np.array([u in written for u in self.unknowns], dtype=np.bool_)
-        self.is_free = ~problem.kept
+        self.is_free = ~lowered.kept
         may_move = np.array([u in movable for u in self.unknowns], dtype=np.bool_)
         with np.errstate(all="ignore"):
-            _, matrix = linearise(problem.tape, at, rows.expression[np.concatenate((equal, points))])
-        scaled = matrix.scaled(np.ones(len(matrix)), problem.scale)
+            _, matrix = linearise(lowered.tape, at, rows.expression[np.concatenate((equal, points))])
+        scaled = matrix.scaled(np.ones(len(matrix)), lowered.scale)
         self.matrix = scaled.only(may_move[scaled.columns])
         self.equations = len(equal)
 
