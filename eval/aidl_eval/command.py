@@ -30,8 +30,7 @@ _OF_MODELS = ("provider", "model", "base_url", "seed", "temperature", "max_token
 
 
 def register(parser: argparse.ArgumentParser) -> None:
-    about = "folder of the results (default: evaluation; with --solver they are printed alone)"
-    value(parser, "--out", "DIR", about)
+    value(parser, "--out", "DIR", "folder of the results (default: evaluation)", str, "evaluation")
     parser.add_argument("--prompts", nargs="+", metavar="NAME", help="those of that name (default: all)")
     about = "where prompts are read from (default: those that come along)"
     value(parser, "--prompt-folder", "DIR", about)
@@ -92,21 +91,18 @@ def run(arguments: argparse.Namespace) -> int:
     from aidl_eval.store import Store
 
     if arguments.solver:
-        return _compare_ways(arguments.solver, arguments.out)
-    store = Store(Path(arguments.out or "evaluation"))
+        return _compare_ways(arguments.solver)
+    store = Store(Path(arguments.out))
     left = _run(arguments, store)
     print(report(store, arguments.clip_weights, arguments.clip_model), end="")
     say(f"{store.folder / 'index.html'}: the gallery; evaluation.md, .csv and .json beside it: the tables")
     return 1 if left else 0
 
 
-def _compare_ways(names: list[str], out: str | None) -> int:
-    """Solves programs in all ways, prints the tables and writes them; 1 if a program is wrong. Raises
-    RecordingError and StoreError.
-    """
+def _compare_ways(names: list[str]) -> int:
+    """Solves programs in all ways and prints the tables; 1 if a program is wrong. Raises RecordingError."""
     from aidl_eval import ablation
     from aidl_eval.recordings import SUFFIX
-    from aidl_eval.store import Store
 
     programs: list[tuple[SourceFile, World | None, str]] = []
     for name in dict.fromkeys(names):
@@ -119,12 +115,7 @@ def _compare_ways(names: list[str], out: str | None) -> int:
     for number, (source, world, thing) in enumerate(programs, 1):
         solves += ablation.compare(source, world, thing)
         say(f"{number}/{len(programs)} {source.name}")
-    text = ablation.markdown(solves)
-    if out is not None:
-        store = Store(Path(out))
-        store.write("solver.md", text.encode())
-        store.write("solver.csv", ablation.to_csv(solves).encode("utf-8-sig"))
-    print(text, end="")
+    print(ablation.markdown(solves), end="")
     return 1 if any(solved.status == ablation.WRONG for solved in solves) else 0
 
 
