@@ -102,12 +102,11 @@ def compare(source: SourceFile, world: World | None = None, thing: str = "") -> 
     for name, way in WAYS.items():
         solution, seconds = _timed(problem, replace(settings.solving, seconds=_SECONDS, explain=False, **way))
         after = Evaluator(dict(zip(lowered.unknowns, solution.values.tolist(), strict=True)))
-        changed = [
-            _is_disturbed(b, _drawn(s, after)) for s, b in zip(structures, before, strict=True) if len(b[0])
-        ]
+        drawn = [(was, _drawn(s, after)) for s, was in zip(structures, before, strict=True) if len(was[0])]
         change = (solution.values - problem.initial) / problem.scale
         drift = round(float(np.sqrt(np.mean(change**2))), _DIGITS) if len(change) else 0.0
-        measured = len(changed), sum(changed), drift, len(solution.changed)
+        disturbed = sum(_is_disturbed(was, now) for was, now in drawn)
+        measured = len(drawn), disturbed, drift, len(solution.changed)
         yield Solved(*names, name, str(solution.status), seconds, *measured)
 
 
