@@ -74,8 +74,8 @@ class Solved:
 def recorded(place: Path) -> list[tuple[SourceFile, str]]:
     """Returns the programs in AIDL of a recording, each with what it draws. Raises RecordingError."""
     found: list[tuple[SourceFile, str]] = []
-    for conversation in recordings.load(place):
-        job, language = conversation.job, VARIANTS[conversation.job.variant]
+    for job, conversation in recordings.load(place).items():
+        language = VARIANTS[job.variant]
         if isinstance(language, Aidl):
             for number, reply in enumerate(conversation.replies, 1):
                 program, _ = find_program(reply.text, language.fences, language.reads)
@@ -106,8 +106,8 @@ def compare(source: SourceFile, world: World | None = None, thing: str = "") -> 
         change = (solution.values - problem.initial) / problem.scale
         drift = round(float(np.sqrt(np.mean(change**2))), _DIGITS) if len(change) else 0.0
         disturbed = sum(_is_disturbed(was, now) for was, now in drawn)
-        measured = len(drawn), disturbed, drift, len(solution.changed)
-        yield Solved(*names, name, str(solution.status), seconds, *measured)
+        status, sizes = str(solution.status), len(solution.changed)
+        yield Solved(*names, name, status, seconds, len(drawn), disturbed, drift, sizes)
 
 
 def _timed(problem: Problem, settings: Settings) -> tuple[Solution, float]:

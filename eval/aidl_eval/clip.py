@@ -13,14 +13,14 @@ import os
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
-from aidl_eval.plan import key_of
-from aidl_eval.store import Store, digest, neutral_path, picture_path
+from aidl_eval.plan import digest, key_of
+from aidl_eval.store import Store, picture_path
 
 MODEL = "ViT-B-32-quickgelu"
 PRETRAINED = "openai"
@@ -36,8 +36,6 @@ class Scores:
 
     of: Mapping[str, float]
     reason: str | None = None
-    neutral: Mapping[str, float] = field(default_factory=dict)
-    """The same of the pictures in the style that all languages share."""
 
 
 class Unavailable(Exception):  # noqa: N818 (that nothing is measured is no error)
@@ -103,17 +101,16 @@ def score_all(
         return Scores({}, str(reason))
     name = f"{model}, {Path(weights).name if weights else PRETRAINED}"
     kept = _kept(store.folder / "clip.json", name)
-    found, neutral, now = dict[str, float](), dict[str, float](), dict[str, float]()
+    found, now = dict[str, float](), dict[str, float]()
     for each in records:
         key = key_of(each)
-        for path, scores in ((picture_path(key), found), (neutral_path(key), neutral)):
-            picture = store.folder / path
-            if each.get("ok") and picture.is_file():
-                png, text = picture.read_bytes(), words(each["text"])
-                content = digest(f"{text}\n{png.hex()}")
-                now[content] = scores[key] = kept[content] if content in kept else score(png, text)
+        picture = store.folder / picture_path(key)
+        if each.get("ok") and picture.is_file():
+            png, text = picture.read_bytes(), words(each["text"])
+            content = digest(f"{text}\n{png.hex()}")
+            now[content] = found[key] = kept[content] if content in kept else score(png, text)
     store.write("clip.json", (json.dumps({"model": name, "scores": now}, indent=1) + "\n").encode())
-    return Scores(found, None, neutral)
+    return Scores(found)
 
 
 def _kept(path: Path, name: str) -> dict[str, float]:

@@ -6,21 +6,19 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from aidl_eval.study import command as study
-from aidl_lang.common.prose import counted
-from aidl_lang.tools.cli import files
+from aidl_lang.common.names import nearest
+from aidl_lang.common.prose import counted, did_you_mean
+from aidl_lang.tools.cli import files, serving
 from aidl_lang.tools.cli.files import UseError, say, show
-from aidl_lang.tools.cli.options import add_provider, choice, count_to, flag, provider, sampling, value
+from aidl_lang.tools.cli.options import add_provider, count_to, flag, provider, sampling, value
 
 if TYPE_CHECKING:
     from aidl_eval.plan import Plan
-    from aidl_eval.recordings import Replay
     from aidl_eval.requirements import Prompt
-    from aidl_eval.run import Done
+    from aidl_eval.run import Ask, Done
     from aidl_eval.store import Store
     from aidl_lang import SourceFile
     from aidl_lang.common.world import World
-    from aidl_lang.tools.llm.messages import Provider
 
 _USUAL = ("full", "no-hierarchy", "no-constraints", "openscad")
 _VARIANTS = (*_USUAL, "paper", "build123d", "cadquery", "svg")
@@ -48,13 +46,8 @@ def register(parser: argparse.ArgumentParser) -> None:
     value(parser, "--jobs", "N", "at a time (default: 4)", many, 4)
     about = "for judging a program, for drawing and for editing it (default: 60)"
     value(parser, "--time-limit", "SECONDS", about, many, 60)
-    choice(parser, "--guide", ("full", "none"), "what a model is told of a language")
-    for name, about in (
-        ("fixes", "the machine mends nothing (AIDL)"),
-        ("recovery", "what a program lost of earlier ones is neither asked for nor put back (AIDL)"),
-        ("plans", "a program with empty structures is taken as it is, not as a plan (AIDL)"),
-    ):
-        parser.add_argument(f"--no-{name}", action="store_false", dest=name, help=about)
+    about = "the machine mends no program in AIDL, puts nothing back, and takes none as a plan"
+    flag(parser, "--unaided", about)
     value(parser, "--clip-weights", "FILE", "weights of CLIP (default: $AIDL_CLIP_WEIGHTS)")
     about = "what they are weights of, as open_clip names it (default: ViT-B-32-quickgelu)"
     value(parser, "--clip-model", "NAME", about, str, "ViT-B-32-quickgelu")
@@ -72,18 +65,45 @@ def register(parser: argparse.ArgumentParser) -> None:
 def _add_study(parser: argparse.ArgumentParser) -> None:
     """Adds `study`, which takes none of the options of a run."""
     own = parser.add_subparsers(title="instead of a run", metavar="[study]").add_parser(
-        "study", help="have people rank the pictures on a local page: `aidl eval study --help`"
+        "study",
+        help="have people rank the pictures on a local page: `aidl eval study --help`",
+        description="`aidl eval study`: people rank pictures on a local page, without knowing what language "
+        "drew which.",
+        epilog="Answers go to study.jsonl in the folder, one line each, and into the tables of `aidl eval "
+        "--report --out FOLDER`. Only this machine, and who has the address that is printed, sees the page.",
     )
-    study.register(own)
-    known = vars(own.parse_args(["FOLDER"])).keys()
+    own.add_argument("folder", metavar="FOLDER", help="that of the results: `--out` of `aidl eval`")
+    serving.add_options(own)
+    known = {"run", *vars(own.parse_args(["FOLDER"]))}
 
     def apart(arguments: argparse.Namespace) -> int:
         for name, given in vars(arguments).items():
             if name not in known and given != parser.get_default(name):
                 parser.error("`study` takes none of the options of a run")
-        return study.run(arguments)
+        return _serve_study(arguments)
 
     own.set_defaults(run=apart)
+
+
+def _serve_study(arguments: argparse.Namespace) -> int:
+    """Runs until interrupted."""
+    serving.require("the study", "starlette", "uvicorn")
+    from aidl_eval.store import Store, StoreError
+    from aidl_eval.study import session, site
+    from aidl_lang.tools.preview.local import Door
+
+    def tell(reason: StoreError) -> None:
+        show([reason.diagnostic])
+
+    store = Store(Path(arguments.folder))
+    served = session.opened(store)
+    hint = "without `--port` a free one is taken"
+    door = Door(serving.listen(arguments.host, arguments.port, "E0953", hint))
+    say(f"{store.folder}: {counted(len(served.sheets), 'sheet')} to rank, {door.url} (stop with Ctrl-C)")
+    if not arguments.no_open:
+        serving.open_browser(door.url)
+    door.serve(site.site(served, door.token, door.addresses, tell), site.CONNECTIONS)
+    return 0
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -120,37 +140,38 @@ def _compare_ways(names: list[str]) -> int:
 
 
 def _run(arguments: argparse.Namespace, store: Store) -> int:
+    """Does what is to be done; returns how many conversations are left. Raises AidlError."""
     from aidl_eval.run import run
 
-    asked, plan = _replayed(arguments) if arguments.replay else _asked(arguments)
-    if asked is not None:
-        store.begin(plan, asked.name)
-    left, failure = run(plan, asked, store, arguments.jobs, float(arguments.time_limit), _progress)
+    name, ask, plan = _replayed(arguments) if arguments.replay else _asked(arguments)
+    if ask is not None:
+        store.begin(plan, name)
+    left, failure = run(plan, ask, store, arguments.jobs, float(arguments.time_limit), _progress)
     if failure is not None:
         show([failure])
         say(f"{left} conversations are left to be had: the same command goes on with them")
     return left
 
 
-def _asked(arguments: argparse.Namespace) -> tuple[Provider | None, Plan]:
-    """Returns the model, none for `--report`, and what it is to be asked."""
+def _asked(arguments: argparse.Namespace) -> tuple[str, Ask | None, Plan]:
+    """Returns the name of the model, what gives it, None for `--report`, and what it is to be asked."""
     from dataclasses import replace
 
-    from aidl_eval.plan import Plan, Switches
+    from aidl_eval.plan import asked
     from aidl_eval.run import Timed
     from aidl_lang.tools.llm.generation import Settings
 
-    asked = None if arguments.report else Timed(provider(arguments))
+    model = None if arguments.report else Timed(provider(arguments))
     chosen = sampling(arguments)
-    if chosen.seed is None and asked is not None and asked.takes_seeds:
+    if chosen.seed is None and model is not None and model.takes_seeds:
         chosen = replace(chosen, seed=1)
     settings = Settings(arguments.attempts, chosen)
-    switches = Switches(arguments.guide == "full", arguments.fixes, arguments.recovery, arguments.plans)
-    plan = Plan(_prompts(arguments), _variants(arguments), arguments.runs or _RUNS, settings, switches)
-    return asked, plan
+    runs = arguments.runs or _RUNS
+    plan = asked(_prompts(arguments), _variants(arguments), runs, settings, not arguments.unaided)
+    return ("", None, plan) if model is None else (model.name, lambda job: model, plan)
 
 
-def _replayed(arguments: argparse.Namespace) -> tuple[Replay, Plan]:
+def _replayed(arguments: argparse.Namespace) -> tuple[str, Ask, Plan]:
     """Returns the replies of a recording, and the plan of its conversations. Raises RecordingError."""
     from aidl_eval import recordings
     from aidl_lang.tools.llm.generation import Settings
@@ -163,20 +184,17 @@ def _replayed(arguments: argparse.Namespace) -> tuple[Replay, Plan]:
                 "leave one of the two out",
             )
     there = recordings.load(Path(arguments.replay))
-    chosen = recordings.chosen(there, arguments.prompts or (), _variants(arguments), arguments.runs)
-    plan = recordings.plan(chosen, _known(arguments).values(), Settings(arguments.attempts))
-    return recordings.Replay("recording", {one.job: one for one in chosen}), plan
+    chosen = recordings.chosen(there.values(), arguments.prompts or (), _variants(arguments), arguments.runs)
+    plan = recordings.plan(chosen, _known(arguments), Settings(arguments.attempts))
+    return "recording", lambda job: recordings.Speaker(there[job]), plan
 
 
 def _prompts(arguments: argparse.Namespace) -> tuple[Prompt, ...]:
-    from difflib import get_close_matches
-
     known = _known(arguments)
     for name in arguments.prompts or ():
         if name not in known:
-            near = get_close_matches(name, known, n=1)
-            hint = f"did you mean `{near[0]}`?" if near else f"there are {', '.join(known)}"
-            raise UseError("E0947", f"there is no prompt `{name}`", hint)
+            hints = did_you_mean(nearest(name, known)) or [f"there are {', '.join(known)}"]
+            raise UseError("E0947", f"there is no prompt `{name}`", *hints)
     return tuple(known[name] for name in dict.fromkeys(arguments.prompts or known))
 
 
@@ -203,22 +221,17 @@ def _variants(arguments: argparse.Namespace) -> tuple[str, ...]:
         language = VARIANTS[name]
         if not isinstance(language, RenderedLanguage):
             continue
-        why = language.missing()
-        if why is not None:
-            code, said = "E0949", f"`{name}` cannot be run: {why}"
-            left, hint = f"{name} is left out: {why}", f"leave out `--variants {name}`"
+        if why := language.missing():
+            refusal = UseError("E0949", f"`{name}` cannot be run: {why}", f"leave out `--variants {name}`")
         elif arguments.constrain:
-            code, said = "E0950", f"--constrain has no grammar for `{name}`"
-            left, hint = (
-                f"{name} is left out: --constrain has the grammar of AIDL alone",
-                "leave --constrain out",
-            )
+            why = "--constrain has the grammar of AIDL alone"
+            refusal = UseError("E0950", f"--constrain has no grammar for `{name}`", "leave --constrain out")
         else:
             continue
         wanted.remove(name)
         if not wanted:
-            raise UseError(code, said, hint)
-        say(left)
+            raise refusal
+        say(f"{name} is left out: {why}")
     return tuple(wanted)
 
 

@@ -17,12 +17,11 @@ from urllib.parse import quote
 
 from aidl_eval import recordings, table
 from aidl_eval.clip import MODEL, Scores, score_all
+from aidl_eval.judgements import study_of
 from aidl_eval.plan import key_of
-from aidl_eval.preference import study_of
 from aidl_eval.requirements import Status
 from aidl_eval.store import Store, picture_path
-from aidl_eval.summary import MEANINGS, WITHIN, Row, names, pairs, rows
-from aidl_eval.table import shown
+from aidl_eval.summary import pairs, rows
 from aidl_lang.common.prose import counted
 
 Record = Mapping[str, Any]
@@ -36,24 +35,20 @@ _STYLE, _SCRIPT = (Path(__file__).with_suffix(suffix).read_text("utf-8") for suf
 
 
 def report(store: Store, weights: str | None = None, model: str = MODEL) -> str:
-    """Writes `evaluation.md`, `.csv`, `.json`, `index.html` and `recording.jsonl`, and returns the Markdown.
+    """Writes `evaluation.md`, `evaluation.csv`, `index.html` and `recording.jsonl`, and returns the Markdown.
     Raises StoreError.
     """
-    records = store.records()
+    records, settings = store.records(), store.settings()
     scores = score_all(store, records, weights, model)
-    settings = store.settings()
-    attempts = settings.get("attempts")
-    limit = attempts if isinstance(attempts, int) else WITHIN[-1]
     study = study_of(store, records)
-    variants, prompts = (rows(records, scores, each, limit, study) for each in (False, True))
-    differences = pairs(variants, study=study)
-    text = table.markdown(variants, prompts, differences, recordings.notes(records, settings), study)
+    variants, prompts = (rows(records, scores, each, study) for each in (False, True))
+    differences = pairs(variants)
+    text = table.markdown(variants, differences, recordings.notes(records, settings), study)
     outputs = {
         "recording.jsonl": recordings.written(records, settings),
         "evaluation.md": text,
         "evaluation.csv": table.to_csv([*variants, *prompts], differences, study),
-        "evaluation.json": table.to_json(variants, prompts, differences, study),
-        "index.html": page(store.folder, records, variants, scores),
+        "index.html": page(store.folder, records, scores),
     }
     for name, content in outputs.items():
         encoding = "utf-8-sig" if name.endswith(".csv") else "utf-8"
@@ -61,10 +56,10 @@ def report(store: Store, weights: str | None = None, model: str = MODEL) -> str:
     return text
 
 
-def page(folder: Path, records: Sequence[Record], rows: Sequence[Row], scores: Scores) -> str:
+def page(folder: Path, records: Sequence[Record], scores: Scores) -> str:
     """Returns the page to be written to `folder`, beside the pictures."""
-    prompts = dict.fromkeys(r["prompt"] for r in records)
-    variants = dict.fromkeys(row.variant for row in rows)
+    prompts, variants = (list(dict.fromkeys(r[name] for r in records)) for name in ("prompt", "variant"))
+    sections = (_prompt(n, [r for r in records if r["prompt"] == n], folder, scores) for n in prompts)
     return "\n".join(
         [
             "<!doctype html>",
@@ -73,17 +68,13 @@ def page(folder: Path, records: Sequence[Record], rows: Sequence[Row], scores: S
             '<meta name="viewport" content="width=device-width, initial-scale=1">',
             f"<title>AIDL evaluation</title><style>{_STYLE}</style></head><body>",
             "<header><h1>AIDL evaluation</h1>",
-            _figures(rows),
             "<form>",
             _choice("prompt", prompts),
             _choice("variant", variants),
             _choice("validity", ("valid", "not valid", "requirement failed", "something lost")),
             '<span id="count"></span></form></header>',
             "<main>",
-            *(
-                _prompt(prompt, [r for r in records if r["prompt"] == prompt], folder, scores)
-                for prompt in prompts
-            ),
+            *sections,
             f"</main><script>{_SCRIPT}</script></body></html>\n",
         ]
     )
@@ -102,17 +93,6 @@ def _text(value: object) -> str:
     text = str(value)
     cut = f"{text[:_LONGEST]}\n… {len(text) - _LONGEST} more characters" if len(text) > _LONGEST else text
     return escape(_CONTROL.sub("\ufffd", cut))
-
-
-def _figures(rows: Sequence[Row]) -> str:
-    head = "".join(f"<th>{_text(row.variant)}</th>" for row in rows)
-    lines = "".join(
-        f'<tr><th title="{_text(MEANINGS[name])}">{_text(name)}</th>'
-        + "".join(f"<td>{_text(shown(row.figures[name]))}</td>" for row in rows)
-        + "</tr>"
-        for name in names(rows)
-    )
-    return f"<details><summary>Figures</summary><table><tr><th></th>{head}</tr>{lines}</table></details>"
 
 
 def _choice(name: str, values: Iterable[str]) -> str:
@@ -165,7 +145,7 @@ def _facts(record: Record, score: float | None) -> str:
     facts = [counted(count, "attempt")]
     facts += [f"{value:g} {_NAMES.get(name, name)}" for name, value in record.get("numbers", {}).items()]
     if edits := record.get("edits", {}).get("edits"):
-        facts.append(f"{sum(e['outcome'] == 'kept' for e in edits)}/{len(edits)} edits kept")
+        facts.append(f"{sum(e['holds'] for e in edits)}/{len(edits)} edits hold")
     if score is not None:
         facts.append(f"CLIP {score:.1f}")
     facts += [f"{what} not measured: {why}" for what, why in record.get("unmeasured", {}).items()]

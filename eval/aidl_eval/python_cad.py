@@ -34,9 +34,7 @@ class PythonCad(RenderedLanguage):
         """Returns the names at the top level that are numbers as written, and are given once."""
         return {name: value for name, value, _, _ in _constants(program)}
 
-    def run(
-        self, program: str, edits: Sequence[Mapping[str, float]] = ({},), parted: bool = True
-    ) -> list[Rendered]:
+    def run(self, program: str, edits: Sequence[Mapping[str, float]] = ({},)) -> list[Rendered]:
         return sandboxed.run(self.name, [_edited(program, edit) for edit in edits])
 
 

@@ -17,9 +17,8 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from aidl_eval import rendering, shapes
-from aidl_eval.regions import Part, Regions
+from aidl_eval.regions import Regions
 from aidl_eval.rendering import NOTHING, UNBOUNDED, Rendered
-from aidl_lang.common.colors import css_color
 from aidl_lang.common.processes import Guarded, Limit, LimitError, limit_met
 from aidl_lang.common.render.excerpt import escape
 from aidl_lang.geometry.curves import Line, Piece
@@ -152,15 +151,11 @@ class _UnboundedError(Exception):
 _Face: TypeAlias = list[Polygon]
 
 
-def _checked(said: dict[str, Any]) -> tuple[list[tuple[str | None, list[_Face]]], list[Polygon]]:
-    """Returns the parts, each a colour and faces by their outlines, and the lines of what a program handed
-    over. Raises KeyError, TypeError and ValueError for all that is not exactly that.
+def _checked(said: dict[str, Any]) -> tuple[list[list[_Face]], list[Polygon]]:
+    """Returns the parts, each its faces by their outlines, and the lines of what a program handed over.
+    Raises KeyError and TypeError for all that is not exactly that.
     """
-    parts = []
-    for part in _list(said["parts"]):
-        if not isinstance(part, dict) or not isinstance(color := part["color"], str | None):
-            raise TypeError
-        parts.append((color, [[_points(o) for o in _list(face)] for face in _list(part["faces"])]))
+    parts = [[[_points(o) for o in _list(face)] for face in _list(part)] for part in _list(said["parts"])]
     return parts, [_points(line) for line in _list(said["lines"])]
 
 
@@ -179,13 +174,9 @@ def _points(outline: object) -> Polygon:
     return np.array(found, float).reshape(-1, 2)
 
 
-def _regions(given: list[tuple[str | None, list[_Face]]], lines: list[Polygon]) -> Regions:
-    parts = list[Part]()
-    for color, faces in given:
-        outlines = [outline for face in faces for outline in _directed(face)]
-        if region := shapes.region(outlines, "NonZero"):
-            parts.append(Part(region, css_color((color,)) if color is not None else None))
-    return Regions(tuple(parts), tuple(_line(line) for line in lines if len(line) > 1))
+def _regions(given: list[list[_Face]], lines: list[Polygon]) -> Regions:
+    parts = [shapes.region([o for face in part for o in _directed(face)], "NonZero") for part in given]
+    return Regions(tuple(filter(None, parts)), tuple(_line(line) for line in lines if len(line) > 1))
 
 
 def _directed(face: _Face) -> Iterator[Polygon]:

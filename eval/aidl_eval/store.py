@@ -5,17 +5,16 @@ Everything is written in one step, so that an interrupted run leaves whole recor
 
 from __future__ import annotations
 
-import hashlib
 import json
 from collections.abc import Mapping
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from aidl_eval.plan import VARIANTS, Job, Plan
-from aidl_eval.recordings import GUIDE, RecordedPlan
+from aidl_eval.plan import VARIANTS, Job, Plan, digest
 from aidl_eval.requirements import Prompt
 from aidl_lang import Diagnostic, __version__
+from aidl_lang.common.prose import shortened
 from aidl_lang.common.world import replace
 from aidl_lang.tools.cli.files import UseError
 from aidl_lang.tools.llm.generation import Attempt, Generation
@@ -43,7 +42,7 @@ class Store:
         """Writes the settings of a plan. Raises StoreError if the records come from others."""
         known, now = self._read(self.folder / SETTINGS) or {}, _settings(plan, provider)
         differing = [
-            f"{name}: `{_short(known[name])}` then, `{_short(now[name])}` now"
+            f"{name}: `{_told(known[name])}` then, `{_told(now[name])}` now"
             for name in sorted(known.keys() & now.keys())
             if known[name] != now[name]
         ]
@@ -80,11 +79,10 @@ class Store:
         found.sort(key=lambda item: item[:3])
         return [record for *_, record in found if record is not None]
 
-    def keep(self, job: Job, record: Record, png: bytes | None, neutral: bytes | None = None) -> None:
-        """Writes the pictures, then the record that refers to them."""
-        for path, drawn in ((picture_path(job.key), png), (neutral_path(job.key), neutral)):
-            if drawn is not None:
-                self.write(path, drawn)
+    def keep(self, job: Job, record: Record, png: bytes | None) -> None:
+        """Writes the picture, then the record that refers to it."""
+        if png is not None:
+            self.write(picture_path(job.key), png)
         self.write(_record_path(job), _json(record))
 
     # --- files ------------------------------------------------------------------------------------
@@ -114,11 +112,6 @@ def picture_path(key: str) -> str:
     return f"pictures/{key}.png"
 
 
-def neutral_path(key: str) -> str:
-    """Returns where the picture in the style that all languages share is kept."""
-    return f"pictures/{key}.neutral.png"
-
-
 def _record_path(job: Job) -> str:
     return f"records/{job.key}.json"
 
@@ -134,10 +127,6 @@ def _is_record(found: Record, job: Job) -> bool:
 
 
 # --- from values to data --------------------------------------------------------------------------
-
-
-def digest(text: str) -> str:
-    return hashlib.sha256(text.encode()).hexdigest()[:16]
 
 
 def measured_with(prompt: Prompt) -> str:
@@ -196,19 +185,14 @@ def _settings(plan: Plan, provider: str) -> Record:
         "temperature": sampling.temperature,
         "max_tokens": sampling.max_tokens,
         "extra": dict(sampling.extra),
-        "help": asdict(plan.switches),
-        **(plan.facts if isinstance(plan, RecordedPlan) else _guides(plan)),
+        "help": plan.has_help,
+        **plan.facts,
         **{f"prompt {prompt.name}": prompt.text for prompt in plan.prompts},
     }
 
 
-def _guides(plan: Plan) -> Record:
-    return {f"{GUIDE}{name}": digest(plan.language(name).guide()) for name in plan.variants}
-
-
-def _short(value: object) -> str:
-    text = " ".join(str(value).split())
-    return text if len(text) <= _SHOWN else f"{text[: _SHOWN - 1]}…"
+def _told(value: object) -> str:
+    return shortened(" ".join(str(value).split()), _SHOWN)
 
 
 def _json(value: Mapping[str, Any]) -> bytes:

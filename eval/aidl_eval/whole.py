@@ -15,7 +15,7 @@ from aidl_lang.geometry.intersect import near_pairs
 from aidl_lang.geometry.network import Joined
 from aidl_lang.geometry.region import Face, Loop, Region, measure, polygon_area
 
-NEAR = 0.02
+_NEAR = 0.02
 """Distance, as a share of the drawing, up to which parts hold together."""
 
 _BELOW_TOP = 0.03
@@ -37,7 +37,7 @@ _SAMPLES = 48
 def pieces(whole: Region) -> float:
     """Counts the groups of material further apart than a fiftieth of the drawing's size."""
     faces = [Region((face,)) for face in whole.faces]
-    joined, reach = Joined(), NEAR * _size(whole)
+    joined, reach = Joined(), _NEAR * _size(whole)
     for i, j in near_pairs([face.box for face in faces], reach):
         if joined.root(i) != joined.root(j):
             closest = region_distance(faces[i], faces[j])
@@ -112,17 +112,6 @@ def fields(drawn: Regions) -> float:
     return float(sum(Region((face,)).area > least for face in faces)) + openings(drawn.whole)
 
 
-def contact(drawn: Regions) -> float:
-    """Returns the distance between the two largest parts, as a share of the drawing's size: 0 where they
-    touch, or where there is one part alone.
-    """
-    large = sorted((part.region for part in drawn.parts), key=lambda region: region.area, reverse=True)[:2]
-    if len(large) < 2:
-        return 0.0 if large else math.nan
-    closest = region_distance(*large)
-    return math.nan if closest is None else closest[0] / drawn.size
-
-
 def fullness(drawn: Regions) -> float:
     """Returns the share of its box that the silhouette covers."""
     if not drawn.whole:
@@ -179,7 +168,14 @@ def _largest_group(sizes: Sequence[tuple[float, ...]]) -> float:
     return float(near.all(axis=2).sum(axis=1).max())
 
 
+def _side(drawn: Regions, axis: int) -> float:
+    box = drawn.whole.box if drawn.whole else (math.nan,) * 4
+    return box[axis + 2] - box[axis]
+
+
 MEASURES: Mapping[str, Callable[[Regions], float]] = {
+    "width": lambda drawn: _side(drawn, 0),
+    "height": lambda drawn: _side(drawn, 1),
     "pieces": lambda drawn: pieces(drawn.whole),
     "symmetry": lambda drawn: symmetry(drawn.whole),
     "openings": lambda drawn: openings(drawn.whole),
@@ -188,7 +184,6 @@ MEASURES: Mapping[str, Callable[[Regions], float]] = {
     "rounds": rounds,
     "alike": alike,
     "fields": fields,
-    "contact": contact,
     "fullness": fullness,
     "width_at_bottom": lambda drawn: width_at(drawn, 0.05),
     "width_at_quarter": lambda drawn: width_at(drawn, 0.25),

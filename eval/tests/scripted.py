@@ -79,7 +79,7 @@ class Plain:
 
     size: float
     radius: float | None
-    parts: tuple[tuple[str | None, tuple[Area, ...]], ...]
+    parts: tuple[tuple[Area, ...], ...]
 
     @property
     def numbers(self) -> Mapping[str, float]:
@@ -90,9 +90,9 @@ class Plain:
 def plain(name: str) -> Plain:
     """Returns the drawing for a prompt, with its numbers as they are written."""
     drawn = regions(name)
-    left, bottom, *_ = union_bounds([part.region.box for part in drawn.parts])
+    left, bottom, *_ = union_bounds([part.box for part in drawn.parts])
     size = round(drawn.size, 2) + 0.003  # no whole number, which edits would keep whole
-    radii = [d.radius for part in drawn.parts for loop in part.region.loops if (d := _disc(loop))]
+    radii = [d.radius for part in drawn.parts for loop in part.loops if (d := _disc(loop))]
     radius = round(max(radii), 2) + 0.003 if radii else None
 
     def share(x: float, y: float) -> Point:
@@ -107,7 +107,7 @@ def plain(name: str) -> Plain:
         return tuple(share(float(x), float(y)) for x, y in loop.polygon(FINE * drawn.size))
 
     parts = tuple(
-        (part.color, tuple(Area(outline(f.outer), tuple(map(outline, f.holes))) for f in part.region.faces))
+        tuple(Area(outline(f.outer), tuple(map(outline, f.holes))) for f in part.faces)
         for part in drawn.parts
     )
     return Plain(size, radius, parts)
@@ -133,9 +133,9 @@ def aidl(name: str, variant: str) -> str:
     drawing = plain(name)
     is_flat, has_cuts = variant == "no-hierarchy", variant != "paper"
     lines = [f"    param {n} = {v:g} in {v / 2:g}..{2 * v:g}" for n, v in drawing.numbers.items()]
-    for number, (color, areas) in enumerate(drawing.parts):
+    for number, areas in enumerate(drawing.parts):
         if not is_flat:
-            lines.append(f"    {_color(color) if has_cuts else ''}solid part_{number} {{")
+            lines.append(f"    solid part_{number} {{")
         for k, area in enumerate(areas):
             if k and not has_cuts:  # a hole cuts all of its solid
                 lines.append(f"    }}\n    solid part_{number}_{k} {{")
@@ -164,10 +164,6 @@ def _aidl(outline: Outline) -> str:
     return f"polygon([{', '.join(f'({x} * size, {y} * size)' for x, y in outline)}])"
 
 
-def _color(color: str | None) -> str:
-    return f'@color("{color}") ' if color else ""
-
-
 def _radius(disc: Disc) -> str:
     return "radius" if disc.is_named else f"{disc.radius:g}"
 
@@ -176,15 +172,14 @@ def openscad(name: str) -> str:
     """Returns the drawing with a module for each part."""
     drawing = plain(name)
     lines = [f"// {TEXTS[name]}", "$fn = 180;", *(f"{n} = {v:g};" for n, v in drawing.numbers.items())]
-    for number, (_, areas) in enumerate(drawing.parts):
+    for number, areas in enumerate(drawing.parts):
         lines.append(f"module part_{number}() {{")
         for area in areas:
             holes = " ".join(map(_openscad, area.holes))
             outer = _openscad(area.outer)
             lines.append(f"    difference() {{ {outer} {holes} }}" if holes else f"    {outer}")
         lines.append("}")
-    for number, (color, _) in enumerate(drawing.parts):
-        lines.append(f'color("{color}") part_{number}();' if color else f"part_{number}();")
+    lines += [f"part_{number}();" for number in range(len(drawing.parts))]
     return "\n".join((*lines, ""))
 
 
@@ -227,15 +222,14 @@ def _python(name: str, head: str, *functions: str) -> str:
         "",
         *functions,
     ]
-    for color, areas in drawing.parts:
+    for areas in drawing.parts:
         shown = ", ".join(
             f"cut({', '.join(map(_called, (area.outer, *area.holes)))})"
             if area.holes
             else _called(area.outer)
             for area in areas
         )
-        options = f", options={{'color': '{color}'}}" if color else ""
-        lines.append(f"show_object([{shown}]{options})")
+        lines.append(f"show_object([{shown}])")
     return "\n".join((*lines, ""))
 
 
@@ -250,9 +244,9 @@ def svg(name: str) -> str:
     drawing = plain(name)
     size = drawing.size
     lines = [f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 {-size:g} {size:g} {size:g}">']
-    for color, areas in drawing.parts:
+    for areas in drawing.parts:
         d = " ".join(_path(o, size) for area in areas for o in (area.outer, *area.holes))
-        lines.append(f'  <path fill="{color or "gray"}" fill-rule="evenodd" d="{d}"/>')
+        lines.append(f'  <path fill-rule="evenodd" d="{d}"/>')
     return "\n".join((*lines, "</svg>", ""))
 
 

@@ -140,11 +140,10 @@ class _Imports:
 
 
 def _executed(library: str, program: str, allowed: frozenset[str]) -> dict[str, Any]:
-    shown: list[tuple[Any, Any]] = []
+    shown: list[Any] = []
 
-    def show_object(shape: Any, name: Any = None, options: Any = None, color: Any = None, **more: Any) -> Any:
-        more = {**(options if isinstance(options, dict) else {}), **more}
-        shown.append((shape, color if color is not None else more.get("color")))
+    def show_object(shape: Any, *about: Any, **more: Any) -> Any:
+        shown.append(shape)
         return shape
 
     names: dict[str, Any] = {"__name__": "__main__", "show_object": show_object, "show": show_object}
@@ -152,7 +151,7 @@ def _executed(library: str, program: str, allowed: frozenset[str]) -> dict[str, 
     try:
         exec(compile(program, _FILE, "exec"), names)
         if not shown and (result := names.get("result")) is not None:
-            shown.append((result, None))
+            shown.append(result)
         found: dict[str, Any] = drawn.collected(shown)
         return found
     except MemoryError:
