@@ -48,9 +48,7 @@ def register(parser: argparse.ArgumentParser) -> None:
     value(parser, "--time-limit", "SECONDS", about, many, 60)
     about = "the machine mends no program in AIDL, puts nothing back, and takes none as a plan"
     flag(parser, "--unaided", about)
-    value(parser, "--clip-weights", "FILE", "weights of CLIP (default: $AIDL_CLIP_WEIGHTS)")
-    about = "what they are weights of, as open_clip names it (default: ViT-B-32-quickgelu)"
-    value(parser, "--clip-model", "NAME", about, str, "ViT-B-32-quickgelu")
+    value(parser, "--clip-weights", "FILE", "weights of CLIP, ViT-B/32 (default: $AIDL_CLIP_WEIGHTS)")
     instead = parser.add_mutually_exclusive_group()
     flag(instead, "--report", "ask nothing: report on the runs that are there")
     about = "ask nothing: take the replies from a recording, a file of JSON Lines or a folder of such"
@@ -114,7 +112,7 @@ def run(arguments: argparse.Namespace) -> int:
         return _compare_ways(arguments.solver)
     store = Store(Path(arguments.out))
     left = _run(arguments, store)
-    print(report(store, arguments.clip_weights, arguments.clip_model), end="")
+    print(report(store, arguments.clip_weights), end="")
     say(f"{store.folder / 'index.html'}: the gallery; evaluation.md, .csv and .json beside it: the tables")
     return 1 if left else 0
 
@@ -158,10 +156,10 @@ def _asked(arguments: argparse.Namespace) -> tuple[str, Ask | None, Plan]:
     from dataclasses import replace
 
     from aidl_eval.plan import asked
-    from aidl_eval.run import Timed
+    from aidl_eval.run import timed
     from aidl_lang.tools.llm.generation import Settings
 
-    model = None if arguments.report else Timed(provider(arguments))
+    model = None if arguments.report else timed(provider(arguments))
     chosen = sampling(arguments)
     if chosen.seed is None and model is not None and model.takes_seeds:
         chosen = replace(chosen, seed=1)
@@ -248,5 +246,5 @@ def _came(done: Done) -> str:
         return f"not valid {after}"
     lost = f", {len(done.record['missing'])} lost" if done.record["missing"] else ""
     results = done.record.get("requirements", ())
-    met = sum(result["status"] == "met" for result in results)
+    met = sum(result["is_met"] for result in results)
     return f"valid {after}{lost}" + (f", {met}/{len(results)} requirements" if results else "")

@@ -16,17 +16,15 @@ from typing import Any
 from urllib.parse import quote
 
 from aidl_eval import recordings, table
-from aidl_eval.clip import MODEL, Scores, score_all
+from aidl_eval.clip import Scores, score_all
 from aidl_eval.judgements import study_of
 from aidl_eval.plan import key_of
-from aidl_eval.requirements import Status
 from aidl_eval.store import Store, picture_path
 from aidl_eval.summary import pairs, rows
 from aidl_lang.common.prose import counted
 
 Record = Mapping[str, Any]
 
-_MARKS = {Status.MET: "✓", Status.FAILED: "✗", Status.UNMEASURABLE: "?"}
 _NAMES = {"degrees": "degrees of freedom", "detached": "detached pieces"}
 _CONTROL = re.compile(r"[\x00-\x08\x0b-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069\ud800-\udfff]")
 _LONGEST = 20_000
@@ -34,16 +32,19 @@ _LONGEST = 20_000
 _STYLE, _SCRIPT = (Path(__file__).with_suffix(suffix).read_text("utf-8") for suffix in (".css", ".js"))
 
 
-def report(store: Store, weights: str | None = None, model: str = MODEL) -> str:
+def report(store: Store, weights: str | None = None) -> str:
     """Writes `evaluation.md`, `evaluation.csv`, `index.html` and `recording.jsonl`, and returns the Markdown.
     Raises StoreError.
     """
     records, settings = store.records(), store.settings()
-    scores = score_all(store, records, weights, model)
+    scores = score_all(store, records, weights)
     study = study_of(store, records)
     variants, prompts = (rows(records, scores, each, study) for each in (False, True))
     differences = pairs(variants)
-    text = table.markdown(variants, differences, recordings.notes(records, settings), study)
+    notes = [*recordings.notes(records, settings)]
+    if scores.reason:
+        notes.append(f"CLIP was not measured: {scores.reason}.")
+    text = table.markdown(variants, differences, notes, study)
     outputs = {
         "recording.jsonl": recordings.written(records, settings),
         "evaluation.md": text,
@@ -71,7 +72,6 @@ def page(folder: Path, records: Sequence[Record], scores: Scores) -> str:
             "<form>",
             _choice("prompt", prompts),
             _choice("variant", variants),
-            _choice("validity", ("valid", "not valid", "requirement failed", "something lost")),
             '<span id="count"></span></form></header>',
             "<main>",
             *sections,
@@ -108,45 +108,29 @@ def _prompt(name: str, records: Sequence[Record], folder: Path, scores: Scores) 
 
 
 def _cell(record: Record, folder: Path, scores: Scores) -> str:
-    key = key_of(record)
-    tags = " ".join(_tags(record))
+    about = f'data-prompt="{_text(record["prompt"])}" data-variant="{_text(record["variant"])}"'
     head = f"<h3>{_text(record['variant'])} <small>run {_text(record['run'])}</small></h3>"
     if "failure" in record:
         body = f'<p class="none">broke off</p><p>{_text(record["failure"]["message"])}</p>'
     else:
-        body = (
-            f"{_picture(record, key, folder)}{_facts(record, scores.of.get(key))}{''.join(_folded(record))}"
-        )
-    return (
-        f'<article data-prompt="{_text(record["prompt"])}" data-variant="{_text(record["variant"])}" '
-        f'data-validity="{tags}">{head}{body}</article>'
-    )
+        body = f"{_picture(record, folder)}{_facts(record, scores)}{''.join(_folded(record))}"
+    return f"<article {about}>{head}{body}</article>"
 
 
-def _tags(record: Record) -> Iterator[str]:
-    """Yields the words, without blanks, by which a record can be selected."""
-    yield "valid" if record.get("ok") else "not-valid"
-    if any(result["status"] != Status.MET for result in record.get("requirements", ())):
-        yield "requirement-failed"
-    if record.get("missing"):
-        yield "something-lost"
-
-
-def _picture(record: Record, key: str, folder: Path) -> str:
-    path = picture_path(key)
+def _picture(record: Record, folder: Path) -> str:
+    path = picture_path(key_of(record))
     if record["ok"] and (folder / path).is_file():
         about = f"{record['prompt']}, {record['variant']}, run {record['run']}"
         return f'<img loading="lazy" src="{quote(path)}" alt="{_text(about)}">'
     return f'<p class="none">{"no picture" if record["ok"] else "not valid"}</p>'
 
 
-def _facts(record: Record, score: float | None) -> str:
-    count = len(record["attempts"])
-    facts = [counted(count, "attempt")]
+def _facts(record: Record, scores: Scores) -> str:
+    facts = [counted(len(record["attempts"]), "attempt")]
     facts += [f"{value:g} {_NAMES.get(name, name)}" for name, value in record.get("numbers", {}).items()]
     if edits := record.get("edits", {}).get("edits"):
         facts.append(f"{sum(e['holds'] for e in edits)}/{len(edits)} edits hold")
-    if score is not None:
+    if (score := scores.of.get(key_of(record))) is not None:
         facts.append(f"CLIP {score:.1f}")
     facts += [f"{what} not measured: {why}" for what, why in record.get("unmeasured", {}).items()]
     return f'<p class="facts">{_text(" · ".join(facts))}</p>'
@@ -154,15 +138,9 @@ def _facts(record: Record, score: float | None) -> str:
 
 def _folded(record: Record) -> Iterator[str]:
     """Yields the unfolding parts: requirements, losses, the program, and the attempts."""
-    results = record.get("requirements", ())
-    if results:
-        met = sum(result["status"] == Status.MET for result in results)
-        items = "".join(
-            f'<li class="{_text(r["status"])}"><b>{_MARKS[Status(r["status"])]}</b> {_text(r["text"])}'
-            + (f"<br><small>{_text(r['detail'])}</small>" if r["detail"] else "")
-            + "</li>"
-            for r in results
-        )
+    if results := record.get("requirements"):
+        items = "".join(map(_requirement, results))
+        met = sum(result["is_met"] for result in results)
         yield _details(f"{met}/{len(results)} requirements", f"<ul>{items}</ul>")
     if record["missing"]:
         items = "".join(f"<li>{_text(phrase)}</li>" for phrase in record["missing"])
@@ -170,6 +148,12 @@ def _folded(record: Record) -> Iterator[str]:
     if record["program"] is not None:
         yield _details("program", f"<pre>{_text(record['program'])}</pre>")
     yield _details("attempts", "".join(_attempt(n, a) for n, a in enumerate(record["attempts"], 1)))
+
+
+def _requirement(result: Record) -> str:
+    kind, mark = ("met", "✓") if result["is_met"] else ("failed", "✗")
+    detail = f"<br><small>{_text(result['detail'])}</small>" if result["detail"] else ""
+    return f'<li class="{kind}"><b>{mark}</b> {_text(result["text"])}{detail}</li>'
 
 
 def _attempt(number: int, attempt: Record) -> str:

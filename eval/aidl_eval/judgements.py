@@ -12,11 +12,9 @@ from dataclasses import asdict, dataclass
 from datetime import UTC, datetime
 from functools import cached_property
 from io import FileIO
-from itertools import groupby
 from pathlib import Path
 
-from cattrs import Converter
-
+from aidl_eval import strict
 from aidl_eval.plan import VARIANTS, digest
 from aidl_eval.statistics import alpha
 from aidl_eval.store import Record, Store, StoreError
@@ -28,7 +26,6 @@ _FORMAT = 1
 _RATER = re.compile(r"[^\W_](?:[\w .-]{0,38}[^\W_])?")
 _LONGEST = 1 << 16
 """More bytes than a line has."""
-_CONVERTER = Converter(detailed_validation=False)
 
 
 @dataclass(frozen=True)
@@ -59,6 +56,16 @@ class Answer:
     ranking: tuple[tuple[str, ...], ...] | None
     date: str
 
+    def __post_init__(self) -> None:
+        languages = [*self.shown, *self.undrawn]
+        groups = (self.shown,) if self.ranking is None else self.ranking
+        if (
+            not VARIANTS.keys() >= set(languages)
+            or len(set(languages)) < len(languages)
+            or sorted(name for group in groups for name in group) != sorted(self.shown)
+        ):
+            raise ValueError("each language shown has one place")
+
     def ranks(self) -> Mapping[str, float]:
         """Returns the rank of each language, 1 for the best; those alike share the mean of theirs, and those
         that drew nothing are alike, and last. Empty where the rater could not tell.
@@ -82,12 +89,12 @@ def sheets(records: Sequence[Record]) -> list[Sheet]:
     """Returns the sheets of all prompts and runs for which two languages drew something. A conversation that
     broke off says nothing of its language and is left out.
     """
-    held = [r for r in records if "failure" not in r]
-    order = {prompt: number for number, prompt in enumerate(dict.fromkeys(r["prompt"] for r in held))}
-    held.sort(key=lambda r: (order[r["prompt"]], r["run"]))
+    held = defaultdict[tuple[str, int], list[Record]](list)
+    for record in records:
+        if "failure" not in record:
+            held[record["prompt"], record["run"]].append(record)
     found = []
-    for (prompt, run), group in groupby(held, key=lambda r: (r["prompt"], r["run"])):
-        own = list(group)
+    for (prompt, run), own in held.items():
         programs = {r["variant"]: digest(str(r["program"])) if _is_drawn(r) else None for r in own}
         drawn = tuple(name for name, program in programs.items() if program is not None)
         undrawn = tuple(name for name, program in programs.items() if program is None)
@@ -133,9 +140,9 @@ class Answers:
         except OSError as error:
             raise StoreError("E0988", f"`{self.path}` cannot be read: {error.strerror or error}") from None
 
-    def add(self, answers: Sequence[Answer]) -> None:
-        """Appends answers in one write, and waits until they are on disk. Raises StoreError."""
-        data = "".join(_line(answer) for answer in answers).encode()
+    def add(self, answer: Answer) -> None:
+        """Appends an answer in one write, and waits until it is on disk. Raises StoreError."""
+        data = (json.dumps({"aidl_study": _FORMAT, **asdict(answer)}, ensure_ascii=False) + "\n").encode()
         try:
             with open(self.path, "ab+", buffering=0) as file:
                 _cut_torn_line(file)
@@ -155,40 +162,17 @@ def _cut_torn_line(file: FileIO) -> None:
         file.truncate(size - len(tail) + tail.rfind(b"\n") + 1)
 
 
-def _line(answer: Answer) -> str:
-    return json.dumps({"aidl_study": _FORMAT, **asdict(answer)}, ensure_ascii=False) + "\n"
-
-
 def _read(path: Path) -> Iterator[Answer]:
     lines = path.read_bytes().split(b"\n")
     for number, line in enumerate(lines[:-1], 1):  # what follows the last newline is half an answer
-        found = _answer(line)
-        if found is None:
+        try:
+            said = json.loads(line)
+            if said.pop("aidl_study") != _FORMAT:
+                raise ValueError
+            yield strict.read(said, Answer)
+        except (AttributeError, KeyError, RecursionError, TypeError, ValueError):
             hint = "remove that line: the rater is asked once more"
-            raise StoreError("E0988", f"`{path}:{number}` is no answer of a study", hint)
-        yield found
-
-
-def _answer(line: bytes) -> Answer | None:
-    """Returns the answer of a line, None if it is none."""
-    try:
-        said = json.loads(line)
-        found = _CONVERTER.structure(said, Answer)
-    except (AttributeError, KeyError, RecursionError, TypeError, ValueError):
-        return None
-    written = {"aidl_study": _FORMAT, **asdict(found)}
-    is_so_written = json.dumps(said, sort_keys=True) == json.dumps(written, sort_keys=True)
-    return found if is_so_written and _is_sound(found) else None
-
-
-def _is_sound(answer: Answer) -> bool:
-    languages = [*answer.shown, *answer.undrawn]
-    groups = (answer.shown,) if answer.ranking is None else answer.ranking
-    return (
-        VARIANTS.keys() >= set(languages)
-        and len(set(languages)) == len(languages)
-        and sorted(name for group in groups for name in group) == sorted(answer.shown)
-    )
+            raise StoreError("E0988", f"`{path}:{number}` is no answer of a study", hint) from None
 
 
 # --- figures ----------------------------------------------------------------------------------------

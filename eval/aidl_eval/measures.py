@@ -12,7 +12,7 @@ from aidl_eval import pictures
 from aidl_eval.plan import VARIANTS
 from aidl_eval.regions import Regions, of_drawing
 from aidl_eval.rendering import RenderedLanguage, as_written
-from aidl_eval.requirements import Prompt, Status, examine
+from aidl_eval.requirements import Prompt, examine
 from aidl_eval.whole import pieces
 from aidl_lang import SourceFile, pipeline
 from aidl_lang.building.model import Knob
@@ -59,7 +59,7 @@ def draw(variant: str, program: str, prompt: Prompt) -> tuple[bytes, Mapping[str
         if valid.model is None:
             raise ValueError("the program was judged valid, and is not")
         found, numbers = drawn(valid), dict(counted(valid.model))
-    numbers["detached"] = max(0.0, pieces(found.whole) - 1)
+    numbers["detached"] = max(0.0, pieces(found) - 1)
     return pictures.png(found), {"numbers": numbers, "requirements": [*map(asdict, examine(prompt, found))]}
 
 
@@ -119,7 +119,7 @@ def _judged(
 
 
 def _met(prompt: Prompt, drawn: Regions) -> frozenset[str]:
-    return frozenset(r.text for r in examine(prompt, drawn) if r.status is Status.MET)
+    return frozenset(r.text for r in examine(prompt, drawn) if r.is_met)
 
 
 def turned(knob: Knob) -> list[Value]:

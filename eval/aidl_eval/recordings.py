@@ -10,13 +10,11 @@ import datetime
 import json
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from cattrs import BaseValidationError, Converter, ForbiddenExtraKeysError, transform_error
-from cattrs.gen import make_dict_structure_fn
-
+from aidl_eval import strict
 from aidl_eval.plan import GUIDE, VARIANTS, Job, Plan, digest, key_of
 from aidl_eval.requirements import Prompt
 from aidl_lang import SourceFile
@@ -49,6 +47,11 @@ class _Reply:
     output: int | None = None
     cost: float | None = None
     seconds: float | None = None
+
+    def __post_init__(self) -> None:
+        for number in (self.input, self.output, self.cost, self.seconds):
+            if number is not None and not 0 <= number < 1e15:
+                raise ValueError("a number is to be from 0 on")
 
 
 @dataclass(frozen=True)
@@ -104,39 +107,6 @@ class Recorded:
         )
 
 
-def _number(said: object, kind: type) -> Any:
-    is_number = type(said) is int or (kind is float and type(said) is float)
-    if not is_number or not 0 <= said < 1e15:  # type: ignore[operator]
-        raise ValueError(f"it is to be a {'whole ' * (kind is int)}number from 0 on")
-    return said
-
-
-def _text(said: object, _: type) -> str:
-    if not isinstance(said, str):
-        raise ValueError("it is to be a text")
-    return said
-
-
-_CONVERTER = Converter(forbid_extra_keys=True)
-_CONVERTER.register_structure_hook(datetime.date, lambda said, _: datetime.date.fromisoformat(said))
-_CONVERTER.register_structure_hook(Finish, lambda said, _: Finish(said))
-_CONVERTER.register_structure_hook(int, _number)
-_CONVERTER.register_structure_hook(float, _number)
-_CONVERTER.register_structure_hook(str, _text)
-_of_object = make_dict_structure_fn(_Reply, _CONVERTER, _cattrs_forbid_extra_keys=True)
-
-
-def _reply(said: object, kind: type) -> _Reply:
-    if isinstance(said, str):
-        return _Reply(said)
-    if not isinstance(said, dict):
-        raise ValueError("it is to be a text or an object")
-    return _of_object(said, kind)
-
-
-_CONVERTER.register_structure_hook(_Reply, _reply)
-
-
 # --- reading ----------------------------------------------------------------------------------------
 
 
@@ -163,24 +133,13 @@ def load(place: Path) -> dict[Job, Recorded]:
 def _conversation(line: str, where: str) -> Recorded:
     try:
         said = json.loads(line)
+        if isinstance(said, dict) and isinstance(said.get("replies"), list):
+            said["replies"] = [{"text": r} if isinstance(r, str) else r for r in said["replies"]]
+        return strict.read(said, Recorded)
+    except strict.WrongError as error:
+        raise _refused(where, str(error)) from None
     except (ValueError, RecursionError) as error:
         raise _refused(where, f"it is no JSON ({str(error)[:80]})") from None
-    if not isinstance(said, dict):
-        raise _refused(where, "it is to be an object, as in {…}")
-    try:
-        return _CONVERTER.structure(said, Recorded)
-    except BaseValidationError as error:
-        why, _, member = transform_error(error, "", _told)[0].rpartition(" @ ")
-        raise _refused(where, f"`{member.lstrip('.')}`: {why}" if member else why) from None
-
-
-def _told(error: BaseException, _: type | None) -> str:
-    match error:
-        case KeyError():
-            return "it is missing"
-        case ForbiddenExtraKeysError(extra_fields=strange):
-            return f"there is no member `{min(strange)[:60]}`"
-    return str(error)[:200]
 
 
 def _refused(where: str, why: str) -> RecordingError:
@@ -261,7 +220,7 @@ def notes(records: Iterable[Mapping[str, Any]], settings: Mapping[str, Any]) -> 
     for r in records:
         if note := settings.get(f"{_NOTE}{key_of(r)}"):
             about.setdefault(note, {})[r["variant"]] = None
-    return tuple(f"{', '.join(variants)}: {note}" for note, variants in about.items())
+    return tuple(f"Note on {', '.join(variants)}: {note}." for note, variants in about.items())
 
 
 def written(records: Iterable[Mapping[str, Any]], settings: Mapping[str, Any]) -> str:
@@ -270,23 +229,13 @@ def written(records: Iterable[Mapping[str, Any]], settings: Mapping[str, Any]) -
 
 
 def _line(kept: Mapping[str, Any], settings: Mapping[str, Any]) -> str:
-    key = key_of(kept)
-    replies = [
-        {
-            "text": attempt["reply"],
-            "model": attempt["model"] or None,
-            "date": attempt.get("date"),
-            "finish": attempt["finish"],
-            **attempt["usage"],
-            "seconds": attempt.get("seconds"),
-        }
-        for attempt in kept["attempts"]
-    ]
-    said = {
-        "aidl_recording": VERSION,
-        **{name: kept[name] for name in ("prompt", "text", "variant", "run")},
-        "guide": settings.get(f"{GUIDE}{key}", settings.get(f"{GUIDE}{kept['variant']}")) or None,
-        "note": settings.get(f"{_NOTE}{key}") or None,
-        "replies": replies,
-    }
-    return json.dumps(said, ensure_ascii=False) + "\n"
+    key, variant = key_of(kept), kept["variant"]
+    replies = tuple(
+        _Reply(a["reply"], a["model"] or None, a["date"], a["finish"], **a["usage"], seconds=a["seconds"])
+        for a in kept["attempts"]
+    )
+    guide = settings.get(f"{GUIDE}{key}", settings.get(f"{GUIDE}{variant}")) or None
+    note = settings.get(f"{_NOTE}{key}") or None
+    about = kept["prompt"], variant, kept["run"]
+    said = Recorded(VERSION, *about, replies, text=kept["text"], guide=guide, note=note)
+    return json.dumps(asdict(said), ensure_ascii=False) + "\n"

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from enum import StrEnum
 from pathlib import Path
 
 from aidl_eval.regions import Regions
@@ -20,12 +19,6 @@ from aidl_lang.building.model import Assertion, Condition, Model
 from aidl_lang.explaining.outcome import assertion_note
 from aidl_lang.interp import interpret
 from aidl_lang.pipeline import front
-
-
-class Status(StrEnum):
-    MET = "met"
-    FAILED = "failed"
-    UNMEASURABLE = "unmeasurable"  # counts as failed
 
 
 @dataclass(frozen=True)
@@ -43,7 +36,7 @@ class Result:
     """What came of a requirement; `detail` tells why it is not met."""
 
     text: str
-    status: Status
+    is_met: bool
     detail: str = ""
 
 
@@ -97,10 +90,10 @@ def examine(prompt: Prompt, drawn: Regions) -> tuple[Result, ...]:
 
 
 def _result(assertion: Assertion, evaluate: Evaluator) -> Result:
-    text = assertion.message or ""
     comparisons = assertion.condition.comparisons() if isinstance(assertion.condition, Condition) else ()
     if not all(math.isfinite(evaluate(side)) for of in comparisons for side in (of.left, of.right)):
-        why = f"nothing is drawn of which `{assertion.text}` could be asked"
-        return Result(text, Status.UNMEASURABLE, why)
-    note = assertion_note(assertion, evaluate)
-    return Result(text, Status.MET) if note is None else Result(text, Status.FAILED, note.label)
+        detail = f"nothing is drawn of which `{assertion.text}` could be asked"
+    else:
+        note = assertion_note(assertion, evaluate)
+        detail = "" if note is None else note.label
+    return Result(assertion.message or "", not detail, detail)

@@ -38,24 +38,19 @@ class Timed:
     """A provider whose replies carry their seconds and their day (UTC). Repeats and pauses count."""
 
     provider: Provider
-
-    @property
-    def name(self) -> str:
-        return self.provider.name
-
-    @property
-    def takes_seeds(self) -> bool:
-        return self.provider.takes_seeds
-
-    @property
-    def takes_grammars(self) -> bool:
-        return self.provider.takes_grammars
+    name: str
+    takes_seeds: bool
+    takes_grammars: bool
 
     def reply(self, messages: Sequence[Message], sampling: Sampling, hear: Callable[[str], None]) -> Reply:
         begun = time.monotonic()
         reply = self.provider.reply(messages, sampling, hear)
         today = datetime.now(UTC).date().isoformat()
         return replace(reply, seconds=round(time.monotonic() - begun, 3), date=today)
+
+
+def timed(provider: Provider) -> Timed:
+    return Timed(provider, provider.name, provider.takes_seeds, provider.takes_grammars)
 
 
 def run(

@@ -18,7 +18,6 @@ from aidl_lang.common.prose import shortened
 from aidl_lang.common.world import replace
 from aidl_lang.tools.cli.files import UseError
 from aidl_lang.tools.llm.generation import Attempt, Generation
-from aidl_lang.tools.llm.messages import Verdict
 
 Record = dict[str, Any]
 
@@ -134,6 +133,9 @@ def measured_with(prompt: Prompt) -> str:
     return digest(f"{__version__}\n{prompt.source.text}")
 
 
+_OF_VERDICT = ("ok", "stage", "codes", "fixes", "missing", "numbers")
+
+
 def recorded(job: Job, prompt: Prompt, generation: Generation) -> Record:
     """Returns the record of a conversation, not yet measured."""
     verdict = generation.verdict
@@ -157,22 +159,14 @@ def failed(job: Job, failure: Diagnostic) -> Record:
 
 
 def _attempt(attempt: Attempt) -> Record:
+    reply, verdict = asdict(attempt.reply), attempt.verdict
     return {
-        "reply": attempt.reply.text,
-        "model": attempt.reply.model,
-        "finish": str(attempt.reply.finish),
-        "usage": asdict(attempt.reply.usage),
-        "seconds": attempt.reply.seconds,
-        "date": attempt.reply.date,
+        "reply": reply.pop("text"),
+        **reply,
         "program": attempt.program,
-        "verdict": None if attempt.verdict is None else _verdict(attempt.verdict),
+        "verdict": None if verdict is None else {name: getattr(verdict, name) for name in _OF_VERDICT},
         "answer": attempt.answer,
     }
-
-
-def _verdict(verdict: Verdict) -> Record:
-    kept = ("ok", "stage", "codes", "fixes", "missing")
-    return {**{name: getattr(verdict, name) for name in kept}, "numbers": dict(verdict.numbers)}
 
 
 def _settings(plan: Plan, provider: str) -> Record:

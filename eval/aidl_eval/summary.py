@@ -15,7 +15,6 @@ from aidl_eval.clip import Scores
 from aidl_eval.judgements import Study
 from aidl_eval.plan import VARIANTS, key_of
 from aidl_eval.rendering import RenderedLanguage
-from aidl_eval.requirements import Status
 from aidl_eval.statistics import Case, Comparison, Interval, by_prompt, compared, holm, interval, wilson
 
 Record = Mapping[str, Any]
@@ -52,22 +51,19 @@ class Share:
 
 @dataclass(frozen=True)
 class Mean:
-    """A mean of numbers with their sample variance (by n - 1); without any, the reason, if known, why nothing
-    was measured.
-    """
+    """A mean of numbers with their sample variance (by n - 1)."""
 
     count: int
     value: float | None = None
     variance: float | None = None
-    reason: str = ""
     cases: tuple[Case, ...] = field(default=(), compare=False, repr=False)
 
     @classmethod
-    def of(cls, numbers: Iterable[tuple[str, float | None]], reason: str = "") -> Mean:
+    def of(cls, numbers: Iterable[tuple[str, float | None]]) -> Mean:
         """Returns the mean of numbers, each with its prompt."""
         cases = tuple(Case(prompt, n) for prompt, n in numbers if n is not None)
         if not cases:
-            return cls(0, reason=reason)
+            return cls(0)
         known = [case.value for case in cases]
         spread = variance(known) if len(known) > 1 else None
         return cls(len(known), fmean(known), spread, cases=cases)
@@ -97,11 +93,6 @@ COMPARED = (
     *("tokens in", "tokens out", "seconds", "CLIP", "rank"),
 )
 """Figures that languages are compared by."""
-
-
-def names(rows: Sequence[Row]) -> list[str]:
-    """Returns the names of the figures that rows have: those of a study only where there is one."""
-    return list(dict.fromkeys(name for row in rows for name in row.figures))
 
 
 def rows(
@@ -165,15 +156,15 @@ def _figures(held: Sequence[Record], scores: Scores) -> dict[str, Figure]:
         "structures": _number(valid, "structures"),
         "constraints": _number(valid, "constraints"),
         "degrees": _number(valid, "degrees"),
-        "requirements": _shares(valid, "status", Status.MET, lambda r: r.get("requirements", ())),
-        "editability": _shares(edited, "holds", True, lambda r: r["edits"]["edits"]),
+        "requirements": _shares(valid, "is_met", lambda r: r.get("requirements", ())),
+        "editability": _shares(edited, "holds", lambda r: r["edits"]["edits"]),
         "knobs": _mean(edited, lambda r: r["edits"]["knobs"]),
         "detached": _number(valid, "detached"),
         "tokens in": _mean(held, lambda r: r["usage"]["input"]),
         "tokens out": _mean(held, lambda r: r["usage"]["output"]),
         "seconds": _mean(held, _seconds),
         "cost": _mean(held, lambda r: r["usage"]["cost"]),
-        "CLIP": _mean(valid, lambda r: scores.of.get(key_of(r)), scores.reason or ""),
+        "CLIP": _mean(valid, lambda r: scores.of.get(key_of(r))),
     }
 
 
@@ -181,18 +172,16 @@ def _share(records: Sequence[Record], holds: Callable[[Record], bool]) -> Share:
     return Share.of(((r["prompt"], int(holds(r)), 1) for r in records), several=False)
 
 
-def _shares(
-    records: Sequence[Record], name: str, wanted: object, results: Callable[[Record], Sequence[Record]]
-) -> Share:
-    """Returns the share of results that are as wanted, of which a record may have several."""
+def _shares(records: Sequence[Record], name: str, results: Callable[[Record], Sequence[Record]]) -> Share:
+    """Returns the share of results with what is named, of which a record may have several."""
     found = [(r["prompt"], results(r)) for r in records]
     return Share.of(
-        ((p, sum(one[name] == wanted for one in own), len(own)) for p, own in found), several=True
+        ((prompt, sum(one[name] for one in own), len(own)) for prompt, own in found), several=True
     )
 
 
-def _mean(records: Sequence[Record], value: Callable[[Record], float | None], reason: str = "") -> Mean:
-    return Mean.of(((r["prompt"], value(r)) for r in records), reason)
+def _mean(records: Sequence[Record], value: Callable[[Record], float | None]) -> Mean:
+    return Mean.of((r["prompt"], value(r)) for r in records)
 
 
 def _number(valid: Sequence[Record], name: str) -> Mean:

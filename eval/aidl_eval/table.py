@@ -7,7 +7,7 @@ from math import sqrt
 
 from aidl_eval.judgements import Study
 from aidl_eval.statistics import RESAMPLES, Interval
-from aidl_eval.summary import Figure, Mean, Pair, Row, Share, names
+from aidl_eval.summary import Figure, Mean, Pair, Row, Share
 from aidl_lang.common.prose import counted
 from aidl_lang.common.world import csv_text
 
@@ -22,15 +22,16 @@ def markdown(
     """
     head = ["", *(row.variant for row in rows)]
     lines = [["conversations", *(_conversations(row) for row in rows)]]
-    lines += [[name, *(shown(row.figures[name]) for row in rows)] for name in names(rows)]
+    lines += [
+        [name, *(shown(row.figures[name]) for row in rows)] for name in (rows[0].figures if rows else ())
+    ]
     parts = [
         "# Evaluation",
-        *(f"Note on {note}." for note in notes),
+        *notes,
         "In square brackets 95 % intervals: Wilson's for conversations, for the rest by drawing prompts with "
         f"replacement ({RESAMPLES:,} resamples). After ± the standard deviation; in round brackets what "
         "figures are taken over.",
         tabulated([head, *lines]),
-        *_reasons(rows),
         *_differences(pairs),
         *_study(study),
     ]
@@ -46,8 +47,6 @@ def shown(figure: Figure) -> str:
             digits = 2 if value < 1000 else 0
             spread = "" if variance is None else f" ± {sqrt(variance):,.{digits}f}"
             return f"{value:,.{digits}f}{spread}{_between(figure.interval, 1, digits)} ({count})"
-        case Mean(reason=reason) if reason:
-            return "not measured"
     return _NONE
 
 
@@ -101,16 +100,6 @@ def _conversations(row: Row) -> str:
     return f"{row.jobs}, and {row.broken_off} that broke off" if row.broken_off else str(row.jobs)
 
 
-def _reasons(rows: Sequence[Row]) -> list[str]:
-    found = {
-        f"{name} was not measured: {figure.reason}.": None
-        for row in rows
-        for name, figure in row.figures.items()
-        if isinstance(figure, Mean) and figure.value is None and figure.reason
-    }
-    return list(found)
-
-
 def tabulated(lines: Sequence[Sequence[str]]) -> str:
     """Returns lines of cells as a table in Markdown, under the first of them."""
     cells = [[cell.replace("|", "\\|") for cell in line] for line in lines]
@@ -120,7 +109,7 @@ def tabulated(lines: Sequence[Sequence[str]]) -> str:
 
 _COLUMNS = (
     *("prompt", "variant", "against", "figure"),
-    *("value", "count", "part", "low", "high", "variance", "reason", "p", "p_holm"),
+    *("value", "count", "part", "low", "high", "variance", "p", "p_holm"),
 )
 
 
@@ -138,7 +127,7 @@ def _of_row(row: Row) -> Iterator[Mapping[str, object]]:
         if isinstance(figure, Share):
             known["part"] = figure.part
         else:
-            known |= {"variance": figure.variance, "reason": figure.reason or None}
+            known["variance"] = figure.variance
         yield {"prompt": row.prompt, "variant": row.variant, "figure": name, **known}
 
 

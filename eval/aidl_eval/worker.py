@@ -35,6 +35,8 @@ class Worker:
         """Returns the result of a task; it and its arguments can be pickled. Raises Broken; CancelledError if
         the worker is stopped.
         """
+        if self._is_stopped:
+            raise CancelledError
         try:
             return self._pool.submit(self._seconds, task, *arguments).result()
         except Exception as error:

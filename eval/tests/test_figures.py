@@ -40,7 +40,7 @@ RECORDS = [
         missing=["a constraint", "a hole"],
         fixes=["a comma"],
         numbers={"structures": 4, "constraints": 6, "detached": 1},
-        requirements=[{"status": s} for s in ("met", "failed", "unmeasurable", "met")],
+        requirements=[{"is_met": is_met} for is_met in (True, False, False, True)],
         edits={"knobs": 2, "edits": [{"holds": True}, {"holds": False}, {"holds": True}]},
     ),
     record("full", 2, [True], numbers={"structures": 2, "constraints": 0, "degrees": 3, "detached": 0}),
@@ -93,14 +93,14 @@ def test_figures_of_a_variant() -> None:
 
 
 def test_markdown() -> None:
-    text = table.markdown(rows(RECORDS, Scores({}, "open_clip is not installed")))
+    text = table.markdown(rows(RECORDS, Scores({})), notes=["A note."])
     lines = text.splitlines()
     assert "|  | full | openscad |" in lines
     assert "| conversations | 3, and 1 that broke off | 1 |" in lines
     assert "| valid | 67 % [21–94] (2/3) | 100 % [21–100] (1/1) |" in lines
     assert "| intents lost | 0.67 ± 1.15 [0.00–2.00] (3) | – |" in lines
-    assert "| CLIP | not measured | not measured |" in lines
-    assert text.count("CLIP was not measured: open_clip is not installed.") == 1
+    assert "| CLIP | – | – |" in lines
+    assert "A note." in lines
 
 
 def test_csv() -> None:
@@ -116,10 +116,10 @@ def test_csv() -> None:
 
 def two_prompts() -> list[Record]:
     """OpenSCAD is valid at first of both prompts, AIDL of one; 2 of 4 and 3 of 3 requirements hold."""
-    results = {"gear": ("met", "met", "failed", "failed"), "door": ("met",) * 3}
+    results = {"gear": (True, True, False, False), "door": (True,) * 3}
     found = []
-    for prompt, statuses in results.items():
-        asked = [{"status": status} for status in statuses]
+    for prompt, found_met in results.items():
+        asked = [{"is_met": is_met} for is_met in found_met]
         verdicts: list[bool | None] = [True] if prompt == "gear" else [False, True]
         found.append({**record("full", 1, verdicts, requirements=asked), "prompt": prompt})
         found.append({**record("openscad", 1, [True], requirements=asked[:1]), "prompt": prompt})
@@ -133,7 +133,9 @@ def test_pairs_of_languages() -> None:
     assert first.comparison == Comparison(2, -0.5, (-1.0, 0.0), 1.0, 1.0)
     assert found["requirements"].comparison.difference == pytest.approx((0.5 + 1) / 2 - 1)
     assert "CLIP" not in found
-    text = table.markdown(rows(two_prompts(), Scores({})), list(found.values()), ["full: only tries"])
+    text = table.markdown(
+        rows(two_prompts(), Scores({})), list(found.values()), ["Note on full: only tries."]
+    )
     assert "| valid at first | full − openscad | -0.50 [-1.00 to 0.00] | 2 | 1.000 | 1.000 |" in text
     assert "Note on full: only tries." in text
     assert "| requirements | 71 % [50–100] (5/7) | 100 % [100–100] (2/2) |" in text

@@ -89,10 +89,10 @@ def test_a_changed_recording_is_not_mixed_with_what_is_there(evaluation: Evaluat
         (line(aidl_recording=2), "`aidl_recording` is to be 1"),
         (line(prompt="../key"), "`prompt` is to be a name of letters, digits, `_` and `-`"),
         (line(run=0), "`run` is to be a whole number from 1 to 10000"),
-        (line(run=1.5), "`run`: it is to be a whole number from 0 on"),
-        (line(run=True), "`run`: it is to be a whole number from 0 on"),
+        (line(run=1.5), "`run`: it is to be a whole number"),
+        (line(run=True), "`run`: it is to be a whole number"),
         (line(replies=[]), "`replies` is to be a list with at least one reply"),
-        (line(replies=[3]), "`replies[0]`: it is to be a text or an object"),
+        (line(replies=[3]), "`replies[0]`: it is to be an object, as in {…}"),
         (line(replies=[{}]), "`replies[0].text`: it is missing"),
         (
             line(replies=[RIGHT, {"text": "", "finish": "bored"}]),

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from aidl_eval.measures import drawn
-from aidl_eval.requirements import Prompt, PromptError, Result, Status, examine, load, read
+from aidl_eval.requirements import Prompt, PromptError, Result, examine, load, read
 from aidl_lang.common.source import SourceFile
 from aidl_lang.pipeline import compile
 from eval.tests.asked import NAMES, TEXTS, prompts
@@ -35,7 +35,7 @@ def examined(prompt: Prompt, text: str) -> tuple[Result, ...]:
 
 def unmet(prompt: Prompt, text: str) -> dict[str, str]:
     """What is asked for and not met, with the reason."""
-    return {r.text: r.detail for r in examined(prompt, text) if r.status is not Status.MET}
+    return {r.text: r.detail for r in examined(prompt, text) if not r.is_met}
 
 
 def test_prompts_are_those_of_the_experiment_in_their_order() -> None:
@@ -57,7 +57,7 @@ def test_a_disc_is_none_of_them(name: str) -> None:
     prompt = prompts()[name]
     results = examined(prompt, "solid disc { rim = circle(radius: 5) }")
     assert [r.text for r in results] == list(prompt.requirements)
-    assert any(r.status is not Status.MET for r in results)
+    assert any(not r.is_met for r in results)
 
 
 @pytest.mark.parametrize("name", NAMES)

@@ -5,10 +5,9 @@ from __future__ import annotations
 import hashlib
 import io
 from base64 import b64encode
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
-from itertools import zip_longest
 from pathlib import Path
 from typing import Any
 
@@ -32,29 +31,18 @@ class Session:
     sheets: tuple[Sheet, ...]
     answers: Answers
 
-    @cached_property
-    def _prompts(self) -> dict[str, list[Sheet]]:
-        found: dict[str, list[Sheet]] = {}
-        for sheet in self.sheets:
-            found.setdefault(sheet.prompt, []).append(sheet)
-        return found
-
     # --- asking -----------------------------------------------------------------------------------
 
     def order(self, rater: str) -> list[Sheet]:
         """Returns all sheets as a rater meets them: every prompt once in an order of the rater's own, then
         every prompt once more with another run. Who stops has seen as many prompts as can be.
         """
-        mine = [
-            sorted(own, key=lambda sheet: _drawn_lot(rater, sheet.prompt, sheet.run))
-            for own in self._prompts.values()
-        ]
-        rounds = [[sheet for sheet in runs if sheet is not None] for runs in zip_longest(*mine)]
-        return [
-            sheet
-            for number, found in enumerate(rounds)
-            for sheet in sorted(found, key=lambda sheet: _drawn_lot(rater, sheet.prompt, f"round {number}"))
-        ]
+        met, rounds = Counter[str](), list[tuple[int, bytes, Sheet]]()
+        for sheet in sorted(self.sheets, key=lambda sheet: _drawn_lot(rater, sheet.prompt, sheet.run)):
+            number = met[sheet.prompt]
+            rounds.append((number, _drawn_lot(rater, sheet.prompt, f"round {number}"), sheet))
+            met[sheet.prompt] += 1
+        return [sheet for *_, sheet in sorted(rounds, key=lambda place: place[:2])]
 
     def shown(self, rater: str, sheet: Sheet) -> list[str]:
         """Returns the languages of a sheet in the order in which a rater sees their pictures."""
@@ -106,7 +94,7 @@ class Session:
             raise RefusedError("There is no such page yet.")
         said = None if ranking is None else tuple(tuple(names[n] for n in group) for group in ranking)
         about = rater, sheet.prompt, sheet.run, sheet.id, tuple(names), sheet.undrawn
-        self.answers.add([Answer(*about, said, now())])
+        self.answers.add(Answer(*about, said, now()))
 
 
 def _answered(before: Answer, names: Sequence[str]) -> dict[str, Any]:
