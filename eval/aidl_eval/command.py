@@ -86,12 +86,9 @@ def _add_study(parser: argparse.ArgumentParser) -> None:
 def _serve_study(arguments: argparse.Namespace) -> int:
     """Runs until interrupted."""
     serving.require("the study", "starlette", "uvicorn")
-    from aidl_eval.store import Store, StoreError
+    from aidl_eval.store import Store
     from aidl_eval.study import session, site
     from aidl_lang.tools.preview.local import Door
-
-    def tell(reason: StoreError) -> None:
-        show([reason.diagnostic])
 
     store = Store(Path(arguments.folder))
     served = session.opened(store)
@@ -100,7 +97,8 @@ def _serve_study(arguments: argparse.Namespace) -> int:
     say(f"{store.folder}: {counted(len(served.sheets), 'sheet')} to rank, {door.url} (stop with Ctrl-C)")
     if not arguments.no_open:
         serving.open_browser(door.url)
-    door.serve(site.site(served, door.token, door.addresses, tell), site.CONNECTIONS)
+    page = site.site(served, door.token, door.addresses, lambda reason: show([reason.diagnostic]))
+    door.serve(page, site.CONNECTIONS)
     return 0
 
 

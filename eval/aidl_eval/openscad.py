@@ -11,7 +11,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache, partial
 from pathlib import Path
-from types import MappingProxyType
 
 import numpy as np
 
@@ -80,7 +79,7 @@ def _unlockable(path: str) -> str | None:
     return f"`{path}` does not run locked in ({errors[0]})" if errors else None
 
 
-def render(program: str, knobs: Mapping[str, float] = MappingProxyType({})) -> Rendered:
+def render(program: str, knobs: Mapping[str, float] | None = None) -> Rendered:
     """Runs a program, with other values for some of its variables, and returns all it draws as one part. It
     is kept from reading files.
 
@@ -97,12 +96,21 @@ def render(program: str, knobs: Mapping[str, float] = MappingProxyType({})) -> R
     errors, warnings = _messages(text)
     if code:
         return Rendered(errors=errors or (_failure(code, text),), warnings=warnings)
-    return _outlined(drawn, errors, warnings)
+    outlines = [
+        np.array(_CORNER.findall(part), float) * (1.0, -1.0)
+        for path in _OUTLINE.findall(drawn)
+        for part in path.split("z")
+        if "," in part
+    ]
+    if not all((np.abs(outline) < rendering.LARGEST).all() for outline in outlines):
+        return Rendered(errors=(*errors, UNBOUNDED), warnings=warnings)
+    region = shapes.region(outlines)
+    return Rendered(Regions((region,) if region else ()), errors if region else (*errors, NOTHING), warnings)
 
 
-def _called(program: str, output: str, knobs: Mapping[str, float]) -> tuple[int | None, str, str]:
+def _called(program: str, output: str, knobs: Mapping[str, float] | None) -> tuple[int | None, str, str]:
     """Returns how OpenSCAD ended (None: late), what it said and what it wrote."""
-    values = [part for name, value in knobs.items() for part in ("-D", f"{name}={value!r}")]
+    values = [part for name, value in (knobs or {}).items() for part in ("-D", f"{name}={value!r}")]
     with tempfile.TemporaryDirectory() as folder:
         drawing, said = Path(folder, output), Path(folder, "said")
         Path(folder, "program.scad").write_text(program, "utf-8", errors="replace")
@@ -218,18 +226,3 @@ def _failure(code: int, text: str) -> str:
     if "3D object" in text:
         return "error: the drawing must be flat, not a solid: do without extrusion, `cube`, `sphere` …"
     return NOTHING
-
-
-def _outlined(svg: str, errors: tuple[str, ...], warnings: tuple[str, ...]) -> Rendered:
-    outlines = [
-        np.array(_CORNER.findall(part), float) * (1.0, -1.0)
-        for path in _OUTLINE.findall(svg)
-        for part in path.split("z")
-        if "," in part
-    ]
-    if not outlines:
-        return Rendered(errors=(*errors, NOTHING), warnings=warnings)
-    if not all((np.abs(outline) < rendering.LARGEST).all() for outline in outlines):
-        return Rendered(errors=(*errors, UNBOUNDED), warnings=warnings)
-    region = shapes.region(outlines)
-    return Rendered(Regions((region,) if region else ()), errors, warnings)

@@ -49,25 +49,21 @@ def _parsed(program: str) -> ast.Module | None:
 
 def _constants(tree: ast.Module) -> dict[str, tuple[int | float, ast.Assign | ast.AnnAssign]]:
     """Returns the numbers at the top level by their names, with the statements that give them."""
-    given = [(name, node) for node in tree.body if (name := _assigned(node)) is not None]
-    names = [name for name, _ in given]
-    found = {}
-    for name, node in given:
-        with suppress(ValueError, TypeError, AttributeError):  # it is no literal
-            value = ast.literal_eval(node.value)
-            if type(value) in (int, float) and names.count(name) == 1:
-                found[name] = value, node
+    given = list[tuple[str, ast.expr, ast.Assign | ast.AnnAssign]]()
+    for node in tree.body:
+        match node:
+            case ast.Assign(targets=[ast.Name(id=name)], value=value):
+                given.append((name, value, node))
+            case ast.AnnAssign(target=ast.Name(id=name), value=ast.expr() as value):
+                given.append((name, value, node))
+    names = [name for name, _, _ in given]
+    found = dict[str, tuple[int | float, ast.Assign | ast.AnnAssign]]()
+    for name, value, node in given:
+        with suppress(ValueError, TypeError, RecursionError):  # it is no literal
+            number = ast.literal_eval(value)
+            if type(number) in (int, float) and names.count(name) == 1:
+                found[name] = number, node
     return found
-
-
-def _assigned(node: ast.stmt) -> str | None:
-    match node:
-        case (
-            ast.Assign(targets=[ast.Name(id=name)])
-            | ast.AnnAssign(target=ast.Name(id=name), value=ast.expr())
-        ):
-            return name
-    return None
 
 
 def _edited(program: str, edit: Mapping[str, float]) -> str:

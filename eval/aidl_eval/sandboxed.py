@@ -37,8 +37,6 @@ def interpreter(library: str) -> str:
 def missing(library: str, python: str) -> str | None:
     """Returns the reason why an interpreter cannot run programs of a library safely; None if it can."""
     variable = f"AIDL_{library.upper()}_PYTHON"
-    if sys.platform == "win32":
-        return "programs in Python cannot be locked in on Windows"
     probe = (
         f"import sys; sys.path.insert(0, {str(_HOST.parent)!r}); import lock; import {library}; "
         "print(lock.has_filter())"

@@ -110,13 +110,9 @@ def _p(differences: Sequence[float]) -> float:
         return 1.0
     from scipy.stats import permutation_test
 
-    def mean(first: Floats, second: Floats, axis: int) -> Floats:
-        found: Floats = np.mean(first - second, axis=axis)
-        return found
-
     found = permutation_test(
-        (np.asarray(differences, float), np.zeros(len(differences))),
-        mean,
+        (np.asarray(differences, float),),  # of one sample the signs are exchanged
+        np.mean,
         permutation_type="samples",
         vectorized=True,
         n_resamples=RESAMPLES,
@@ -148,14 +144,15 @@ def alpha(groups: Iterable[Iterable[Sequence[float]]]) -> float | None:
 
 
 def _disagreement(units: Sequence[Sequence[float]]) -> tuple[float, float]:
-    """Returns the disagreement within units and that expected by chance, times the number of values."""
+    """Returns the disagreement within units and that expected by chance, in squares of ranks: values differ
+    by how many given ones lie between them.
+    """
+    from scipy.stats import rankdata
+
     if not units:
         return 0.0, 0.0
-    values, places = np.unique(np.concatenate(units), return_inverse=True)
-    tables = np.zeros((len(units), len(values)))
-    np.add.at(tables, (np.repeat(np.arange(len(units)), list(map(len, units))), places), 1)
-    counts = tables.sum(0)
-    middles = np.cumsum(counts) - counts / 2  # ranks differ by how many given values lie between them
-    squares = (middles[:, None] - middles) ** 2
-    pairs = np.einsum("ui,uj,ij->u", tables, tables, squares)
-    return float((pairs / (tables.sum(1) - 1)).sum()), float(counts @ squares @ counts / (counts.sum() - 1))
+    ranks = rankdata(np.concatenate(units))
+    own = np.split(ranks, np.cumsum([len(unit) for unit in units])[:-1])
+    return float(sum(len(unit) * np.var(unit, ddof=1) for unit in own)), float(
+        len(ranks) * np.var(ranks, ddof=1)
+    )

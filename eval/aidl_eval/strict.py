@@ -40,7 +40,7 @@ def _told(error: BaseException, _: type | None) -> str:
 
 def _exactly(said: object, kind: type) -> Any:
     if issubclass(kind, StrEnum):
-        return kind(said)
+        return kind(str(said))
     if type(said) is not kind and not (kind is float and type(said) is int):
         raise ValueError(f"it is to be {_WORDS[kind]}")
     return said

@@ -18,19 +18,14 @@ from aidl_lang.geometry.region import Face, Region, measure, polygon_area
 
 _NEAR = 0.02
 """Distance, as a share of the drawing, up to which parts hold together."""
-
 _BELOW_TOP = 0.03
 """Distance from its top at which a drawing is cut to count battlements, as a share of its height."""
-
 _SLIVER = 0.004
 """Width, as a share of the drawing's size, up to which something is too small to be counted."""
-
 _ALIKE = 0.05
 """Relative difference up to which sizes are one."""
-
 _ROUND = 0.06
 """Difference from a disc's area up to which an outline is round: a twelve-sided one is."""
-
 _SAMPLES = 48
 """Points on a curve at which the distance from the centre is measured."""
 
