@@ -12,6 +12,7 @@ import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from html import escape
 from pathlib import Path
+from string import Template
 from typing import Any
 from urllib.parse import quote
 
@@ -29,7 +30,9 @@ _NAMES = {"degrees": "degrees of freedom", "detached": "detached pieces"}
 _CONTROL = re.compile(r"[\x00-\x08\x0b-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069\ud800-\udfff]")
 _LONGEST = 20_000
 """Most characters of a program or a reply that are shown."""
-_STYLE, _SCRIPT = (Path(__file__).with_suffix(suffix).read_text("utf-8") for suffix in (".css", ".js"))
+_PAGE, _STYLE, _SCRIPT = (
+    Path(__file__).with_suffix(suffix).read_text("utf-8") for suffix in (".html", ".css", ".js")
+)
 
 
 def report(store: Store, weights: str | None = None) -> str:
@@ -61,22 +64,12 @@ def page(folder: Path, records: Sequence[Record], scores: Scores) -> str:
     """Returns the page to be written to `folder`, beside the pictures."""
     prompts, variants = (list(dict.fromkeys(r[name] for r in records)) for name in ("prompt", "variant"))
     sections = (_prompt(n, [r for r in records if r["prompt"] == n], folder, scores) for n in prompts)
-    return "\n".join(
-        [
-            "<!doctype html>",
-            '<html lang="en"><head><meta charset="utf-8">',
-            f'<meta http-equiv="Content-Security-Policy" content="{_policy()}">',
-            '<meta name="viewport" content="width=device-width, initial-scale=1">',
-            f"<title>AIDL evaluation</title><style>{_STYLE}</style></head><body>",
-            "<header><h1>AIDL evaluation</h1>",
-            "<form>",
-            _choice("prompt", prompts),
-            _choice("variant", variants),
-            '<span id="count"></span></form></header>',
-            "<main>",
-            *sections,
-            f"</main><script>{_SCRIPT}</script></body></html>\n",
-        ]
+    return Template(_PAGE).substitute(
+        policy=_policy(),
+        style=_STYLE,
+        choices="\n".join((_choice("prompt", prompts), _choice("variant", variants))),
+        sections="\n".join(sections),
+        script=_SCRIPT,
     )
 
 

@@ -79,21 +79,13 @@ def test_a_mistake_fails_what_it_breaks(name: str, right: str, wrong: str, expec
     assert list(unmet(prompts()[name], text.replace(right, wrong))) == expected
 
 
-WHAT = """/// x
-assembly x {{
-    var {} = 1
-    assert {} == {}, "it"
-}}
-"""
+def asking(measure: str, value: str) -> Prompt:
+    text = f'/// x\nassembly x {{ var {measure} = 1 assert {measure} == {value}, "it" }}'
+    return read(SourceFile("1-x.aidl", text))
 
 
 def test_what_fails_is_told_in_numbers() -> None:
-    prompt = read(SourceFile("1-x.aidl", WHAT.format("pieces", "pieces", 2)))
-    assert unmet(prompt, "solid s { a = square(size: 10) }") == {"it": "1 is not == 2"}
-
-
-def asking(measure: str, value: str) -> Prompt:
-    return read(SourceFile("x.aidl", WHAT.format(measure, measure, value)))
+    assert unmet(asking("pieces", "2"), "solid s { a = square(size: 10) }") == {"it": "1 is not == 2"}
 
 
 SQUARES = "a = square(size: 10) b = square(center: fixed(({}, 0)), size: 10)"
