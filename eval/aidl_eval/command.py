@@ -154,10 +154,10 @@ def _asked(arguments: argparse.Namespace) -> tuple[str, Ask | None, Plan]:
     from dataclasses import replace
 
     from aidl_eval.plan import asked
-    from aidl_eval.run import timed
+    from aidl_eval.run import Timed
     from aidl_lang.tools.llm.generation import Settings
 
-    model = None if arguments.report else timed(provider(arguments))
+    model = None if arguments.report else Timed.of(provider(arguments))
     chosen = sampling(arguments)
     if chosen.seed is None and model is not None and model.takes_seeds:
         chosen = replace(chosen, seed=1)

@@ -42,15 +42,15 @@ class Timed:
     takes_seeds: bool
     takes_grammars: bool
 
+    @classmethod
+    def of(cls, provider: Provider) -> Timed:
+        return cls(provider, provider.name, provider.takes_seeds, provider.takes_grammars)
+
     def reply(self, messages: Sequence[Message], sampling: Sampling, hear: Callable[[str], None]) -> Reply:
         begun = time.monotonic()
         reply = self.provider.reply(messages, sampling, hear)
         today = datetime.now(UTC).date().isoformat()
         return replace(reply, seconds=round(time.monotonic() - begun, 3), date=today)
-
-
-def timed(provider: Provider) -> Timed:
-    return Timed(provider, provider.name, provider.takes_seeds, provider.takes_grammars)
 
 
 def run(
@@ -123,7 +123,7 @@ def _worked(plan: Plan, ask: Ask | None, worker: Worker, job: Job, record: Recor
     prompt = plan.prompt(job)
     if record is None:
         assert ask is not None
-        language = Remote(plan.language(job.variant), worker)
+        language = Remote.of(plan.language(job.variant), worker)
         generation = generate(Task(prompt.text), ask(job), language, plan.sampled(job))
         if generation.failure is not None:
             return Done(job, store.failed(job, generation.failure), failure=generation.failure)

@@ -65,18 +65,13 @@ class Remote:
 
     language: Language
     worker: Worker
+    name: str
+    suffix: str
+    fences: tuple[str, ...]
 
-    @property
-    def name(self) -> str:
-        return self.language.name
-
-    @property
-    def suffix(self) -> str:
-        return self.language.suffix
-
-    @property
-    def fences(self) -> tuple[str, ...]:
-        return self.language.fences
+    @classmethod
+    def of(cls, language: Language, worker: Worker) -> Remote:
+        return cls(language, worker, language.name, language.suffix, language.fences)
 
     def guide(self) -> str:
         return self.language.guide()
