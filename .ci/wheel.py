@@ -301,7 +301,7 @@ def evaluates(here: Installation) -> None:
     asked = ("--prompts", "gear", "--variants", "full", "--runs", "1", "--provider", "exec:cat reply.md")
     here.run("eval", "--out", "results", *asked, says="1/1 gear, full, run 1: valid")
     here.run("eval", "study", "results", "--no-open", code=2, says="E0987")
-    here.run("eval", "--solver", "part.aidl", says="no-box-rule")
+    here.run("eval", "--solver", "part.aidl", says="no-pruning")
 
 
 def generates(here: Installation, protocol: str) -> None:

@@ -61,16 +61,14 @@ def interpret(
     limits: BuildingLimits = DEFAULT_LIMITS,
     turned: Mapping[int, int] | None = None,
     states_constants: bool = False,
-    whole_boxes: bool = False,
 ) -> Interpretation:
     """Runs a program. Never raises for what a program says; errors are among the diagnostics.
 
     turned            for ambiguous calls, by number, how many places from the nearest reading to take
     states_constants  conditions over constants, which are decided at once, become constraints all the same
-    whole_boxes       a box compared with that of a descendant does not leave it out, for comparison
     """
     it = Interpreter(program, overrides or {}, limits, EXECUTORS, evaluate, call, turned=turned or {})
-    it.states_constants, it.whole_boxes = states_constants, whole_boxes
+    it.states_constants = states_constants
     it.frames_turn = any(map(_speaks_of_rotation, program.resolution.modules))
     it.watched = frozenset(node for violation in program.violations for node in violation.nodes)
     try:

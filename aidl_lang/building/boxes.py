@@ -134,10 +134,10 @@ def boxes_in(*roots: Expression) -> tuple[Mapping[Structure, frozenset[str]], fr
     return found, frozenset(beside)
 
 
-def spelled_out(*roots: Expression, equal: bool = False, whole: bool = False) -> tuple[Expression, ...]:
+def spelled_out(*roots: Expression, equal: bool = False) -> tuple[Expression, ...]:
     """Returns the expressions of one comparison with every side of a box spelled out. If they are the same
     sides of an assembly of parts and of one of these, and shall be `equal`, that part is the outermost: it is
-    not left out. Where boxes are to be `whole`, nothing is.
+    not left out.
     """
     if not any(root.is_open for root in roots):
         return roots
@@ -147,8 +147,7 @@ def spelled_out(*roots: Expression, equal: bool = False, whole: bool = False) ->
         return roots
     flush = equal and len({root.payload.name for root in roots if isinstance(root.payload, Side)}) == 1
     flush = flush and all(isinstance(root.payload, Side) for root in roots)
-    boxed = (s for side in sides for s in side.box.sources if isinstance(s, Structure))
-    used = set() if whole else set(boxed)
+    used = {s for side in sides for s in side.box.sources if isinstance(s, Structure)}
 
     def known(side: object) -> Expression | None:
         if not isinstance(side, Side):

@@ -296,7 +296,6 @@ class Interpreter:
     """for readings, by number, how many places from the nearest to what is written they are to be taken"""
     states_constants: bool = False
     """conditions over constants become constraints of the model like others, and those of asserts too"""
-    whole_boxes: bool = False  # no box leaves out those of descendants that it is compared with
     literals: list[Literal] = field(default_factory=list)
     pending: dict[Structure, list[tuple[ast.Statement, Env]]] = field(default_factory=dict)
     orders: dict[Structure, list[Stated]] = field(default_factory=dict)

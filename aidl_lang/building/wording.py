@@ -127,7 +127,7 @@ def compare_numbers(it: Interpreter, relation: str, a: Num, b: Num, node: ast.No
         dimension = units.add(a.dimension, b.dimension)
     except units.UnequalError as pair:
         return it.misfit(rules.unequal(f"`{relation}` does not compare", *pair.args), node)
-    left, right = spelled_out(a.expression, b.expression, equal=relation == "==", whole=it.whole_boxes)
+    left, right = spelled_out(a.expression, b.expression, equal=relation == "==")
     if left.is_constant and right.is_constant:
         return _relates(relation, left.value, right.value, dimension == ANGLE, EXACT, strict=True)
     boxes, beside = boxes_in(a.expression, b.expression)

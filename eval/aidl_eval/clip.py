@@ -11,16 +11,15 @@ import io
 import json
 import os
 import re
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
-from dataclasses import dataclass, field
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
-from aidl_eval.plan import key_of
-from aidl_eval.store import Store, digest, neutral_path, picture_path
+from aidl_eval.plan import digest, key_of
+from aidl_eval.store import Store, picture_path
 
 MODEL = "ViT-B-32-quickgelu"
 PRETRAINED = "openai"
@@ -36,8 +35,6 @@ class Scores:
 
     of: Mapping[str, float]
     reason: str | None = None
-    neutral: Mapping[str, float] = field(default_factory=dict)
-    """The same of the pictures in the style that all languages share."""
 
 
 class Unavailable(Exception):  # noqa: N818 (that nothing is measured is no error)
@@ -50,23 +47,21 @@ def words(prompt: str) -> str:
     return f"a 2D drawing of {'an' if thing[:1].lower() in 'aeiou' else 'a'} {thing}"
 
 
-def load(weights: str | None, model: str = MODEL) -> Scorer:
+def load(weights: str | None) -> Scorer:
     """Returns a model with the weights of a file, or with those of the cache. Raises Unavailable."""
     if find_spec("open_clip") is None:
         raise Unavailable("open_clip is not installed (pip install 'aidl-eval[clip]')")
     if weights is not None and not Path(weights).is_file():
         raise Unavailable(f"there is no file of weights `{weights}`")
-    with _offline():  # which huggingface_hub looks at when it is imported
-        torch, open_clip, image = (import_module(name) for name in ("torch", "open_clip", "PIL.Image"))
-        try:
-            network, _, prepare = open_clip.create_model_and_transforms(
-                model, pretrained=weights or PRETRAINED
-            )
-            tokenize = open_clip.get_tokenizer(model)
-        except Exception as error:  # the loaders raise all sorts of things
-            said = " ".join(str(error).split()).partition(". ")[0][:200]
-            source = f"`{weights}`" if weights else f"the cache (name a file by {VARIABLE} or --clip-weights)"
-            raise Unavailable(f"{model} cannot be loaded from {source}: {said}") from error
+    os.environ["HF_HUB_OFFLINE"] = "1"  # which huggingface_hub looks at when it is imported
+    torch, open_clip, image = (import_module(name) for name in ("torch", "open_clip", "PIL.Image"))
+    try:
+        network, _, prepare = open_clip.create_model_and_transforms(MODEL, pretrained=weights or PRETRAINED)
+        tokenize = open_clip.get_tokenizer(MODEL)
+    except Exception as error:  # the loaders raise all sorts of things
+        said = " ".join(str(error).split()).partition(". ")[0][:200]
+        source = f"`{weights}`" if weights else f"the cache (name a file by {VARIABLE} or --clip-weights)"
+        raise Unavailable(f"{MODEL} cannot be loaded from {source}: {said}") from error
     network.eval()
 
     def score(png: bytes, text: str) -> float:
@@ -78,42 +73,25 @@ def load(weights: str | None, model: str = MODEL) -> Scorer:
     return score
 
 
-@contextmanager
-def _offline() -> Iterator[None]:
-    """Keeps huggingface_hub from fetching half a gigabyte of missing weights."""
-    before = os.environ.get("HF_HUB_OFFLINE")
-    os.environ["HF_HUB_OFFLINE"] = "1"
-    try:
-        yield
-    finally:
-        if before is None:
-            del os.environ["HF_HUB_OFFLINE"]
-        else:
-            os.environ["HF_HUB_OFFLINE"] = before
-
-
-def score_all(
-    store: Store, records: Sequence[Mapping[str, Any]], weights: str | None = None, model: str = MODEL
-) -> Scores:
+def score_all(store: Store, records: Sequence[Mapping[str, Any]], weights: str | None = None) -> Scores:
     """Returns the scores of all valid programs that were drawn, kept in `clip.json` by picture and text."""
     weights = weights or os.environ.get(VARIABLE)
     try:
-        score = load(weights, model)
+        score = load(weights)
     except Unavailable as reason:
         return Scores({}, str(reason))
-    name = f"{model}, {Path(weights).name if weights else PRETRAINED}"
+    name = f"{MODEL}, {Path(weights).name if weights else PRETRAINED}"
     kept = _kept(store.folder / "clip.json", name)
-    found, neutral, now = dict[str, float](), dict[str, float](), dict[str, float]()
+    found, now = dict[str, float](), dict[str, float]()
     for each in records:
         key = key_of(each)
-        for path, scores in ((picture_path(key), found), (neutral_path(key), neutral)):
-            picture = store.folder / path
-            if each.get("ok") and picture.is_file():
-                png, text = picture.read_bytes(), words(each["text"])
-                content = digest(f"{text}\n{png.hex()}")
-                now[content] = scores[key] = kept[content] if content in kept else score(png, text)
+        picture = store.folder / picture_path(key)
+        if each.get("ok") and picture.is_file():
+            png, text = picture.read_bytes(), words(each["text"])
+            content = digest(f"{text}\n{png.hex()}")
+            now[content] = found[key] = kept[content] if content in kept else score(png, text)
     store.write("clip.json", (json.dumps({"model": name, "scores": now}, indent=1) + "\n").encode())
-    return Scores(found, None, neutral)
+    return Scores(found)
 
 
 def _kept(path: Path, name: str) -> dict[str, float]:

@@ -6,21 +6,19 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from aidl_eval.study import command as study
-from aidl_lang.common.prose import counted
-from aidl_lang.tools.cli import files
+from aidl_lang.common.names import nearest
+from aidl_lang.common.prose import counted, did_you_mean
+from aidl_lang.tools.cli import files, serving
 from aidl_lang.tools.cli.files import UseError, say, show
-from aidl_lang.tools.cli.options import add_provider, choice, count_to, flag, provider, sampling, value
+from aidl_lang.tools.cli.options import add_provider, count_to, flag, provider, sampling, value
 
 if TYPE_CHECKING:
     from aidl_eval.plan import Plan
-    from aidl_eval.recordings import Replay
     from aidl_eval.requirements import Prompt
-    from aidl_eval.run import Done
+    from aidl_eval.run import Ask, Done
     from aidl_eval.store import Store
     from aidl_lang import SourceFile
     from aidl_lang.common.world import World
-    from aidl_lang.tools.llm.messages import Provider
 
 _USUAL = ("full", "no-hierarchy", "no-constraints", "openscad")
 _VARIANTS = (*_USUAL, "paper", "build123d", "cadquery", "svg")
@@ -30,8 +28,7 @@ _OF_MODELS = ("provider", "model", "base_url", "seed", "temperature", "max_token
 
 
 def register(parser: argparse.ArgumentParser) -> None:
-    about = "folder of the results (default: evaluation; with --solver they are printed alone)"
-    value(parser, "--out", "DIR", about)
+    value(parser, "--out", "DIR", "folder of the results (default: evaluation)", str, "evaluation")
     parser.add_argument("--prompts", nargs="+", metavar="NAME", help="those of that name (default: all)")
     about = "where prompts are read from (default: those that come along)"
     value(parser, "--prompt-folder", "DIR", about)
@@ -49,16 +46,9 @@ def register(parser: argparse.ArgumentParser) -> None:
     value(parser, "--jobs", "N", "at a time (default: 4)", many, 4)
     about = "for judging a program, for drawing and for editing it (default: 60)"
     value(parser, "--time-limit", "SECONDS", about, many, 60)
-    choice(parser, "--guide", ("full", "none"), "what a model is told of a language")
-    for name, about in (
-        ("fixes", "the machine mends nothing (AIDL)"),
-        ("recovery", "what a program lost of earlier ones is neither asked for nor put back (AIDL)"),
-        ("plans", "a program with empty structures is taken as it is, not as a plan (AIDL)"),
-    ):
-        parser.add_argument(f"--no-{name}", action="store_false", dest=name, help=about)
-    value(parser, "--clip-weights", "FILE", "weights of CLIP (default: $AIDL_CLIP_WEIGHTS)")
-    about = "what they are weights of, as open_clip names it (default: ViT-B-32-quickgelu)"
-    value(parser, "--clip-model", "NAME", about, str, "ViT-B-32-quickgelu")
+    about = "the machine mends no program in AIDL, puts nothing back, and takes none as a plan"
+    flag(parser, "--unaided", about)
+    value(parser, "--clip-weights", "FILE", "weights of CLIP, ViT-B/32 (default: $AIDL_CLIP_WEIGHTS)")
     instead = parser.add_mutually_exclusive_group()
     flag(instead, "--report", "ask nothing: report on the runs that are there")
     about = "ask nothing: take the replies from a recording, a file of JSON Lines or a folder of such"
@@ -73,18 +63,43 @@ def register(parser: argparse.ArgumentParser) -> None:
 def _add_study(parser: argparse.ArgumentParser) -> None:
     """Adds `study`, which takes none of the options of a run."""
     own = parser.add_subparsers(title="instead of a run", metavar="[study]").add_parser(
-        "study", help="have people rank the pictures on a local page: `aidl eval study --help`"
+        "study",
+        help="have people rank the pictures on a local page: `aidl eval study --help`",
+        description="`aidl eval study`: people rank pictures on a local page, without knowing what language "
+        "drew which.",
+        epilog="Answers go to study.jsonl in the folder, one line each, and into the tables of `aidl eval "
+        "--report --out FOLDER`. Only this machine, and who has the address that is printed, sees the page.",
     )
-    study.register(own)
-    known = vars(own.parse_args(["FOLDER"])).keys()
+    own.add_argument("folder", metavar="FOLDER", help="that of the results: `--out` of `aidl eval`")
+    serving.add_options(own)
+    known = {"run", *vars(own.parse_args(["FOLDER"]))}
 
     def apart(arguments: argparse.Namespace) -> int:
         for name, given in vars(arguments).items():
             if name not in known and given != parser.get_default(name):
                 parser.error("`study` takes none of the options of a run")
-        return study.run(arguments)
+        return _serve_study(arguments)
 
     own.set_defaults(run=apart)
+
+
+def _serve_study(arguments: argparse.Namespace) -> int:
+    """Runs until interrupted."""
+    serving.require("the study", "aidl_server")
+    from aidl_eval.store import Store
+    from aidl_eval.study import session, site
+    from aidl_server.preview.local import Door
+
+    store = Store(Path(arguments.folder))
+    served = session.opened(store)
+    hint = "without `--port` a free one is taken"
+    door = Door(serving.listen(arguments.host, arguments.port, "E0953", hint))
+    say(f"{store.folder}: {counted(len(served.sheets), 'sheet')} to rank, {door.url} (stop with Ctrl-C)")
+    if not arguments.no_open:
+        serving.open_browser(door.url)
+    page = site.site(served, door.token, door.addresses, lambda reason: show([reason.diagnostic]))
+    door.serve(page, site.CONNECTIONS)
+    return 0
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -92,21 +107,18 @@ def run(arguments: argparse.Namespace) -> int:
     from aidl_eval.store import Store
 
     if arguments.solver:
-        return _compare_ways(arguments.solver, arguments.out)
-    store = Store(Path(arguments.out or "evaluation"))
+        return _compare_ways(arguments.solver)
+    store = Store(Path(arguments.out))
     left = _run(arguments, store)
-    print(report(store, arguments.clip_weights, arguments.clip_model), end="")
+    print(report(store, arguments.clip_weights), end="")
     say(f"{store.folder / 'index.html'}: the gallery; evaluation.md, .csv and .json beside it: the tables")
     return 1 if left else 0
 
 
-def _compare_ways(names: list[str], out: str | None) -> int:
-    """Solves programs in all ways, prints the tables and writes them; 1 if a program is wrong. Raises
-    RecordingError and StoreError.
-    """
+def _compare_ways(names: list[str]) -> int:
+    """Solves programs in all ways and prints the tables; 1 if a program is wrong. Raises RecordingError."""
     from aidl_eval import ablation
     from aidl_eval.recordings import SUFFIX
-    from aidl_eval.store import Store
 
     programs: list[tuple[SourceFile, World | None, str]] = []
     for name in dict.fromkeys(names):
@@ -119,47 +131,43 @@ def _compare_ways(names: list[str], out: str | None) -> int:
     for number, (source, world, thing) in enumerate(programs, 1):
         solves += ablation.compare(source, world, thing)
         say(f"{number}/{len(programs)} {source.name}")
-    text = ablation.markdown(solves)
-    if out is not None:
-        store = Store(Path(out))
-        store.write("solver.md", text.encode())
-        store.write("solver.csv", ablation.to_csv(solves).encode("utf-8-sig"))
-    print(text, end="")
+    print(ablation.markdown(solves), end="")
     return 1 if any(solved.status == ablation.WRONG for solved in solves) else 0
 
 
 def _run(arguments: argparse.Namespace, store: Store) -> int:
+    """Does what is to be done; returns how many conversations are left. Raises AidlError."""
     from aidl_eval.run import run
 
-    asked, plan = _replayed(arguments) if arguments.replay else _asked(arguments)
-    if asked is not None:
-        store.begin(plan, asked.name)
-    left, failure = run(plan, asked, store, arguments.jobs, float(arguments.time_limit), _progress)
+    name, ask, plan = _replayed(arguments) if arguments.replay else _asked(arguments)
+    if ask is not None:
+        store.begin(plan, name)
+    left, failure = run(plan, ask, store, arguments.jobs, float(arguments.time_limit), _progress)
     if failure is not None:
         show([failure])
         say(f"{left} conversations are left to be had: the same command goes on with them")
     return left
 
 
-def _asked(arguments: argparse.Namespace) -> tuple[Provider | None, Plan]:
-    """Returns the model, none for `--report`, and what it is to be asked."""
+def _asked(arguments: argparse.Namespace) -> tuple[str, Ask | None, Plan]:
+    """Returns the name of the model, what gives it, None for `--report`, and what it is to be asked."""
     from dataclasses import replace
 
-    from aidl_eval.plan import Plan, Switches
+    from aidl_eval.plan import asked
     from aidl_eval.run import Timed
     from aidl_lang.tools.llm.generation import Settings
 
-    asked = None if arguments.report else Timed(provider(arguments))
+    model = None if arguments.report else Timed.of(provider(arguments))
     chosen = sampling(arguments)
-    if chosen.seed is None and asked is not None and asked.takes_seeds:
+    if chosen.seed is None and model is not None and model.takes_seeds:
         chosen = replace(chosen, seed=1)
     settings = Settings(arguments.attempts, chosen)
-    switches = Switches(arguments.guide == "full", arguments.fixes, arguments.recovery, arguments.plans)
-    plan = Plan(_prompts(arguments), _variants(arguments), arguments.runs or _RUNS, settings, switches)
-    return asked, plan
+    runs = arguments.runs or _RUNS
+    plan = asked(_prompts(arguments), _variants(arguments), runs, settings, not arguments.unaided)
+    return ("", None, plan) if model is None else (model.name, lambda job: model, plan)
 
 
-def _replayed(arguments: argparse.Namespace) -> tuple[Replay, Plan]:
+def _replayed(arguments: argparse.Namespace) -> tuple[str, Ask, Plan]:
     """Returns the replies of a recording, and the plan of its conversations. Raises RecordingError."""
     from aidl_eval import recordings
     from aidl_lang.tools.llm.generation import Settings
@@ -172,20 +180,17 @@ def _replayed(arguments: argparse.Namespace) -> tuple[Replay, Plan]:
                 "leave one of the two out",
             )
     there = recordings.load(Path(arguments.replay))
-    chosen = recordings.chosen(there, arguments.prompts or (), _variants(arguments), arguments.runs)
-    plan = recordings.plan(chosen, _known(arguments).values(), Settings(arguments.attempts))
-    return recordings.Replay("recording", {one.job: one for one in chosen}), plan
+    chosen = recordings.chosen(there.values(), arguments.prompts or (), _variants(arguments), arguments.runs)
+    plan = recordings.plan(chosen, _known(arguments), Settings(arguments.attempts))
+    return "recording", lambda job: recordings.Speaker(there[job]), plan
 
 
 def _prompts(arguments: argparse.Namespace) -> tuple[Prompt, ...]:
-    from difflib import get_close_matches
-
     known = _known(arguments)
     for name in arguments.prompts or ():
         if name not in known:
-            near = get_close_matches(name, known, n=1)
-            hint = f"did you mean `{near[0]}`?" if near else f"there are {', '.join(known)}"
-            raise UseError("E0947", f"there is no prompt `{name}`", hint)
+            hints = did_you_mean(nearest(name, known)) or [f"there are {', '.join(known)}"]
+            raise UseError("E0947", f"there is no prompt `{name}`", *hints)
     return tuple(known[name] for name in dict.fromkeys(arguments.prompts or known))
 
 
@@ -212,22 +217,17 @@ def _variants(arguments: argparse.Namespace) -> tuple[str, ...]:
         language = VARIANTS[name]
         if not isinstance(language, RenderedLanguage):
             continue
-        why = language.missing()
-        if why is not None:
-            code, said = "E0949", f"`{name}` cannot be run: {why}"
-            left, hint = f"{name} is left out: {why}", f"leave out `--variants {name}`"
+        if why := language.missing():
+            refusal = UseError("E0949", f"`{name}` cannot be run: {why}", f"leave out `--variants {name}`")
         elif arguments.constrain:
-            code, said = "E0950", f"--constrain has no grammar for `{name}`"
-            left, hint = (
-                f"{name} is left out: --constrain has the grammar of AIDL alone",
-                "leave --constrain out",
-            )
+            why = "--constrain has the grammar of AIDL alone"
+            refusal = UseError("E0950", f"--constrain has no grammar for `{name}`", "leave --constrain out")
         else:
             continue
         wanted.remove(name)
         if not wanted:
-            raise UseError(code, said, hint)
-        say(left)
+            raise refusal
+        say(f"{name} is left out: {why}")
     return tuple(wanted)
 
 
@@ -244,5 +244,5 @@ def _came(done: Done) -> str:
         return f"not valid {after}"
     lost = f", {len(done.record['missing'])} lost" if done.record["missing"] else ""
     results = done.record.get("requirements", ())
-    met = sum(result["status"] == "met" for result in results)
+    met = sum(result["is_met"] for result in results)
     return f"valid {after}{lost}" + (f", {met}/{len(results)} requirements" if results else "")

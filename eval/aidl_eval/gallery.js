@@ -4,10 +4,9 @@ function choose() {
   const wanted = Object.fromEntries(new FormData(form));
   let seen = 0;
   for (const cell of cells) {
-    const { prompt, variant, validity } = cell.dataset;
+    const { prompt, variant } = cell.dataset;
     const fits = (!wanted.prompt || prompt === wanted.prompt)
-      && (!wanted.variant || variant === wanted.variant)
-      && (!wanted.validity || validity.split(" ").includes(wanted.validity.replace(/ /g, "-")));
+      && (!wanted.variant || variant === wanted.variant);
     cell.hidden = !fits;
     seen += fits;
   }

@@ -12,48 +12,47 @@ import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from html import escape
 from pathlib import Path
+from string import Template
 from typing import Any
 from urllib.parse import quote
 
 from aidl_eval import recordings, table
-from aidl_eval.clip import MODEL, Scores, score_all
+from aidl_eval.clip import Scores, score_all
+from aidl_eval.judgements import study_of
 from aidl_eval.plan import key_of
-from aidl_eval.preference import study_of
-from aidl_eval.requirements import Status
 from aidl_eval.store import Store, picture_path
-from aidl_eval.summary import MEANINGS, WITHIN, Row, names, pairs, rows
-from aidl_eval.table import shown
+from aidl_eval.summary import pairs, rows
 from aidl_lang.common.prose import counted
 
 Record = Mapping[str, Any]
 
-_MARKS = {Status.MET: "✓", Status.FAILED: "✗", Status.UNMEASURABLE: "?"}
 _NAMES = {"degrees": "degrees of freedom", "detached": "detached pieces"}
 _CONTROL = re.compile(r"[\x00-\x08\x0b-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069\ud800-\udfff]")
 _LONGEST = 20_000
 """Most characters of a program or a reply that are shown."""
-_STYLE, _SCRIPT = (Path(__file__).with_suffix(suffix).read_text("utf-8") for suffix in (".css", ".js"))
+_PAGE, _STYLE, _SCRIPT = (
+    Path(__file__).with_suffix(suffix).read_text("utf-8") for suffix in (".html", ".css", ".js")
+)
 
 
-def report(store: Store, weights: str | None = None, model: str = MODEL) -> str:
-    """Writes `evaluation.md`, `.csv`, `.json`, `index.html` and `recording.jsonl`, and returns the Markdown.
+def report(store: Store, weights: str | None = None) -> str:
+    """Writes `evaluation.md`, `evaluation.csv`, `index.html` and `recording.jsonl`, and returns the Markdown.
     Raises StoreError.
     """
-    records = store.records()
-    scores = score_all(store, records, weights, model)
-    settings = store.settings()
-    attempts = settings.get("attempts")
-    limit = attempts if isinstance(attempts, int) else WITHIN[-1]
+    records, settings = store.records(), store.settings()
+    scores = score_all(store, records, weights)
     study = study_of(store, records)
-    variants, prompts = (rows(records, scores, each, limit, study) for each in (False, True))
-    differences = pairs(variants, study=study)
-    text = table.markdown(variants, prompts, differences, recordings.notes(records, settings), study)
+    variants, prompts = (rows(records, scores, each, study) for each in (False, True))
+    differences = pairs(variants)
+    notes = [*recordings.notes(records, settings)]
+    if scores.reason:
+        notes.append(f"CLIP was not measured: {scores.reason}.")
+    text = table.markdown(variants, differences, notes, study)
     outputs = {
         "recording.jsonl": recordings.written(records, settings),
         "evaluation.md": text,
         "evaluation.csv": table.to_csv([*variants, *prompts], differences, study),
-        "evaluation.json": table.to_json(variants, prompts, differences, study),
-        "index.html": page(store.folder, records, variants, scores),
+        "index.html": page(store.folder, records, scores),
     }
     for name, content in outputs.items():
         encoding = "utf-8-sig" if name.endswith(".csv") else "utf-8"
@@ -61,31 +60,16 @@ def report(store: Store, weights: str | None = None, model: str = MODEL) -> str:
     return text
 
 
-def page(folder: Path, records: Sequence[Record], rows: Sequence[Row], scores: Scores) -> str:
+def page(folder: Path, records: Sequence[Record], scores: Scores) -> str:
     """Returns the page to be written to `folder`, beside the pictures."""
-    prompts = dict.fromkeys(r["prompt"] for r in records)
-    variants = dict.fromkeys(row.variant for row in rows)
-    return "\n".join(
-        [
-            "<!doctype html>",
-            '<html lang="en"><head><meta charset="utf-8">',
-            f'<meta http-equiv="Content-Security-Policy" content="{_policy()}">',
-            '<meta name="viewport" content="width=device-width, initial-scale=1">',
-            f"<title>AIDL evaluation</title><style>{_STYLE}</style></head><body>",
-            "<header><h1>AIDL evaluation</h1>",
-            _figures(rows),
-            "<form>",
-            _choice("prompt", prompts),
-            _choice("variant", variants),
-            _choice("validity", ("valid", "not valid", "requirement failed", "something lost")),
-            '<span id="count"></span></form></header>',
-            "<main>",
-            *(
-                _prompt(prompt, [r for r in records if r["prompt"] == prompt], folder, scores)
-                for prompt in prompts
-            ),
-            f"</main><script>{_SCRIPT}</script></body></html>\n",
-        ]
+    prompts, variants = (list(dict.fromkeys(r[name] for r in records)) for name in ("prompt", "variant"))
+    sections = (_prompt(n, [r for r in records if r["prompt"] == n], folder, scores) for n in prompts)
+    return Template(_PAGE).substitute(
+        policy=_policy(),
+        style=_STYLE,
+        choices="\n".join((_choice("prompt", prompts), _choice("variant", variants))),
+        sections="\n".join(sections),
+        script=_SCRIPT,
     )
 
 
@@ -104,17 +88,6 @@ def _text(value: object) -> str:
     return escape(_CONTROL.sub("\ufffd", cut))
 
 
-def _figures(rows: Sequence[Row]) -> str:
-    head = "".join(f"<th>{_text(row.variant)}</th>" for row in rows)
-    lines = "".join(
-        f'<tr><th title="{_text(MEANINGS[name])}">{_text(name)}</th>'
-        + "".join(f"<td>{_text(shown(row.figures[name]))}</td>" for row in rows)
-        + "</tr>"
-        for name in names(rows)
-    )
-    return f"<details><summary>Figures</summary><table><tr><th></th>{head}</tr>{lines}</table></details>"
-
-
 def _choice(name: str, values: Iterable[str]) -> str:
     options = "".join(f"<option>{_text(value)}</option>" for value in values)
     return f'<label>{name} <select name="{name}"><option value="">all</option>{options}</select></label>'
@@ -128,45 +101,29 @@ def _prompt(name: str, records: Sequence[Record], folder: Path, scores: Scores) 
 
 
 def _cell(record: Record, folder: Path, scores: Scores) -> str:
-    key = key_of(record)
-    tags = " ".join(_tags(record))
+    about = f'data-prompt="{_text(record["prompt"])}" data-variant="{_text(record["variant"])}"'
     head = f"<h3>{_text(record['variant'])} <small>run {_text(record['run'])}</small></h3>"
     if "failure" in record:
         body = f'<p class="none">broke off</p><p>{_text(record["failure"]["message"])}</p>'
     else:
-        body = (
-            f"{_picture(record, key, folder)}{_facts(record, scores.of.get(key))}{''.join(_folded(record))}"
-        )
-    return (
-        f'<article data-prompt="{_text(record["prompt"])}" data-variant="{_text(record["variant"])}" '
-        f'data-validity="{tags}">{head}{body}</article>'
-    )
+        body = f"{_picture(record, folder)}{_facts(record, scores)}{''.join(_folded(record))}"
+    return f"<article {about}>{head}{body}</article>"
 
 
-def _tags(record: Record) -> Iterator[str]:
-    """Yields the words, without blanks, by which a record can be selected."""
-    yield "valid" if record.get("ok") else "not-valid"
-    if any(result["status"] != Status.MET for result in record.get("requirements", ())):
-        yield "requirement-failed"
-    if record.get("missing"):
-        yield "something-lost"
-
-
-def _picture(record: Record, key: str, folder: Path) -> str:
-    path = picture_path(key)
+def _picture(record: Record, folder: Path) -> str:
+    path = picture_path(key_of(record))
     if record["ok"] and (folder / path).is_file():
         about = f"{record['prompt']}, {record['variant']}, run {record['run']}"
         return f'<img loading="lazy" src="{quote(path)}" alt="{_text(about)}">'
     return f'<p class="none">{"no picture" if record["ok"] else "not valid"}</p>'
 
 
-def _facts(record: Record, score: float | None) -> str:
-    count = len(record["attempts"])
-    facts = [counted(count, "attempt")]
+def _facts(record: Record, scores: Scores) -> str:
+    facts = [counted(len(record["attempts"]), "attempt")]
     facts += [f"{value:g} {_NAMES.get(name, name)}" for name, value in record.get("numbers", {}).items()]
     if edits := record.get("edits", {}).get("edits"):
-        facts.append(f"{sum(e['outcome'] == 'kept' for e in edits)}/{len(edits)} edits kept")
-    if score is not None:
+        facts.append(f"{sum(e['holds'] for e in edits)}/{len(edits)} edits hold")
+    if (score := scores.of.get(key_of(record))) is not None:
         facts.append(f"CLIP {score:.1f}")
     facts += [f"{what} not measured: {why}" for what, why in record.get("unmeasured", {}).items()]
     return f'<p class="facts">{_text(" · ".join(facts))}</p>'
@@ -174,15 +131,9 @@ def _facts(record: Record, score: float | None) -> str:
 
 def _folded(record: Record) -> Iterator[str]:
     """Yields the unfolding parts: requirements, losses, the program, and the attempts."""
-    results = record.get("requirements", ())
-    if results:
-        met = sum(result["status"] == Status.MET for result in results)
-        items = "".join(
-            f'<li class="{_text(r["status"])}"><b>{_MARKS[Status(r["status"])]}</b> {_text(r["text"])}'
-            + (f"<br><small>{_text(r['detail'])}</small>" if r["detail"] else "")
-            + "</li>"
-            for r in results
-        )
+    if results := record.get("requirements"):
+        items = "".join(map(_requirement, results))
+        met = sum(result["is_met"] for result in results)
         yield _details(f"{met}/{len(results)} requirements", f"<ul>{items}</ul>")
     if record["missing"]:
         items = "".join(f"<li>{_text(phrase)}</li>" for phrase in record["missing"])
@@ -190,6 +141,12 @@ def _folded(record: Record) -> Iterator[str]:
     if record["program"] is not None:
         yield _details("program", f"<pre>{_text(record['program'])}</pre>")
     yield _details("attempts", "".join(_attempt(n, a) for n, a in enumerate(record["attempts"], 1)))
+
+
+def _requirement(result: Record) -> str:
+    kind, mark = ("met", "✓") if result["is_met"] else ("failed", "✗")
+    detail = f"<br><small>{_text(result['detail'])}</small>" if result["detail"] else ""
+    return f'<li class="{kind}"><b>{mark}</b> {_text(result["text"])}{detail}</li>'
 
 
 def _attempt(number: int, attempt: Record) -> str:

@@ -1,4 +1,4 @@
-"""What raters say of pictures: the sheets to be ranked, and answers, each one line of `study.jsonl`."""
+"""Sheets of pictures to be ranked; the answers, each one line of `study.jsonl`; the figures from them."""
 
 from __future__ import annotations
 
@@ -6,29 +6,26 @@ import json
 import os
 import re
 import unicodedata
+from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from datetime import UTC, datetime
+from functools import cached_property
 from io import FileIO
-from itertools import groupby
 from pathlib import Path
 
-from cattrs import Converter
-
-from aidl_eval.plan import VARIANTS
-from aidl_eval.store import Record, StoreError, digest, neutral_path, picture_path
+from aidl_eval import strict
+from aidl_eval.plan import VARIANTS, digest
+from aidl_eval.statistics import alpha
+from aidl_eval.store import Record, Store, StoreError
 
 STUDY = "study.jsonl"
-STYLES = {"neutral": neutral_path, "own": picture_path}
-"""Where the pictures of each style are."""
 FEWEST = 2
 """Fewest pictures that can be ranked."""
 _FORMAT = 1
 _RATER = re.compile(r"[^\W_](?:[\w .-]{0,38}[^\W_])?")
 _LONGEST = 1 << 16
 """More bytes than a line has."""
-_DATE = re.compile(r"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\dZ", re.ASCII)
-_CONVERTER = Converter(detailed_validation=False)
 
 
 @dataclass(frozen=True)
@@ -43,11 +40,6 @@ class Sheet:
     """Languages whose conversation came to no picture: they are last, and nothing is shown of them."""
     id: str
 
-    @property
-    def is_shown(self) -> bool:
-        """Tells whether there is anything to ask: with fewer pictures the order is plain."""
-        return len(self.drawn) >= FEWEST
-
 
 @dataclass(frozen=True)
 class Answer:
@@ -59,17 +51,20 @@ class Answer:
     prompt: str
     run: int
     sheet: str
-    pictures: str
     shown: tuple[str, ...]
     undrawn: tuple[str, ...]
     ranking: tuple[tuple[str, ...], ...] | None
-    number: int
-    count: int
     date: str
 
-    @property
-    def was_asked(self) -> bool:
-        return len(self.shown) >= FEWEST
+    def __post_init__(self) -> None:
+        languages = [*self.shown, *self.undrawn]
+        groups = (self.shown,) if self.ranking is None else self.ranking
+        if (
+            not VARIANTS.keys() >= set(languages)
+            or len(set(languages)) < len(languages)
+            or sorted(name for group in groups for name in group) != sorted(self.shown)
+        ):
+            raise ValueError("each language shown has one place")
 
     def ranks(self) -> Mapping[str, float]:
         """Returns the rank of each language, 1 for the best; those alike share the mean of theirs, and those
@@ -91,22 +86,21 @@ def _ranks(groups: Iterable[Sequence[str]]) -> dict[str, float]:
 
 
 def sheets(records: Sequence[Record]) -> list[Sheet]:
-    """Returns the sheets of all prompts and runs for which two languages had a conversation. One that broke
-    off says nothing of its language and is left out.
+    """Returns the sheets of all prompts and runs for which two languages drew something. A conversation that
+    broke off says nothing of its language and is left out.
     """
-    texts = {r["prompt"]: r["text"] for r in records if "text" in r}
-    held = [r for r in records if "failure" not in r]
-    order = {prompt: number for number, prompt in enumerate(dict.fromkeys(r["prompt"] for r in held))}
-    held.sort(key=lambda r: (order[r["prompt"]], r["run"]))
+    held = defaultdict[tuple[str, int], list[Record]](list)
+    for record in records:
+        if "failure" not in record:
+            held[record["prompt"], record["run"]].append(record)
     found = []
-    for (prompt, run), own in groupby(held, key=lambda r: (r["prompt"], r["run"])):
+    for (prompt, run), own in held.items():
         programs = {r["variant"]: digest(str(r["program"])) if _is_drawn(r) else None for r in own}
-        if len(programs) < FEWEST:
-            continue
         drawn = tuple(name for name, program in programs.items() if program is not None)
         undrawn = tuple(name for name, program in programs.items() if program is None)
-        of = digest(json.dumps([prompt, run, sorted(programs.items())]))
-        found.append(Sheet(prompt, run, texts.get(prompt, prompt), drawn, undrawn, of))
+        if len(drawn) >= FEWEST:
+            of = digest(json.dumps([prompt, run, sorted(programs.items())]))
+            found.append(Sheet(prompt, run, own[0]["text"], drawn, undrawn, of))
     return found
 
 
@@ -146,9 +140,9 @@ class Answers:
         except OSError as error:
             raise StoreError("E0988", f"`{self.path}` cannot be read: {error.strerror or error}") from None
 
-    def add(self, answers: Sequence[Answer]) -> None:
-        """Appends answers in one write, and waits until they are on disk. Raises StoreError."""
-        data = "".join(_line(answer) for answer in answers).encode()
+    def add(self, answer: Answer) -> None:
+        """Appends an answer in one write, and waits until it is on disk. Raises StoreError."""
+        data = (json.dumps({"aidl_study": _FORMAT, **asdict(answer)}, ensure_ascii=False) + "\n").encode()
         try:
             with open(self.path, "ab+", buffering=0) as file:
                 _cut_torn_line(file)
@@ -168,43 +162,72 @@ def _cut_torn_line(file: FileIO) -> None:
         file.truncate(size - len(tail) + tail.rfind(b"\n") + 1)
 
 
-def _line(answer: Answer) -> str:
-    return json.dumps({"aidl_study": _FORMAT, **asdict(answer)}, ensure_ascii=False) + "\n"
-
-
 def _read(path: Path) -> Iterator[Answer]:
     lines = path.read_bytes().split(b"\n")
     for number, line in enumerate(lines[:-1], 1):  # what follows the last newline is half an answer
-        found = _answer(line)
-        if found is None:
+        try:
+            said = json.loads(line)
+            if said.pop("aidl_study") != _FORMAT:
+                raise ValueError
+            yield strict.read(said, Answer)
+        except (AttributeError, KeyError, RecursionError, TypeError, ValueError):
             hint = "remove that line: the rater is asked once more"
-            raise StoreError("E0988", f"`{path}:{number}` is no answer of a study", hint)
-        yield found
+            raise StoreError("E0988", f"`{path}:{number}` is no answer of a study", hint) from None
 
 
-def _answer(line: bytes) -> Answer | None:
-    """Returns the answer of a line, None if it is none."""
-    try:
-        said = json.loads(line)
-        found = _CONVERTER.structure(said, Answer)
-    except (AttributeError, KeyError, RecursionError, TypeError, ValueError):
+# --- figures ----------------------------------------------------------------------------------------
+
+
+@dataclass
+class Study:
+    """The answers that count: of each rater the last on each sheet. `outdated` ones were given on sheets that
+    are no longer there as they were.
+    """
+
+    answers: tuple[Answer, ...]
+    outdated: int
+
+    @cached_property
+    def ranked(self) -> list[tuple[str, Mapping[str, float]]]:
+        """Returns the prompt and the ranks of each answer in which the rater could tell."""
+        return [(answer.prompt, answer.ranks()) for answer in self.answers if answer.ranking is not None]
+
+    @property
+    def raters(self) -> int:
+        return len({answer.rater for answer in self.answers})
+
+    @property
+    def judgements(self) -> int:
+        return len(self.ranked)
+
+    @property
+    def skipped(self) -> int:
+        return len(self.answers) - len(self.ranked)
+
+    @cached_property
+    def alpha(self) -> float | None:
+        """Returns how far raters agree on the ranks of what they saw."""
+        groups = defaultdict[int, dict[tuple[str, str], list[float]]](lambda: defaultdict(list))
+        for answer in self.answers:
+            for language, rank in answer.ranks_of_shown().items():
+                groups[len(answer.shown)][answer.sheet, language].append(rank)
+        return alpha(units.values() for units in groups.values())
+
+    def ranks(self, variant: str, prompt: str | None = None) -> list[tuple[str, float]]:
+        """Returns the ranks of a language, each with its prompt."""
+        return [
+            (asked, ranks[variant])
+            for asked, ranks in self.ranked
+            if variant in ranks and prompt in (None, asked)
+        ]
+
+
+def study_of(store: Store, records: Sequence[Record]) -> Study | None:
+    """Returns the study in a folder; None if nobody was asked. Raises StoreError."""
+    given = Answers(store.folder).all()
+    if not given:
         return None
-    written = {"aidl_study": _FORMAT, **asdict(found)}
-    is_so_written = json.dumps(said, sort_keys=True) == json.dumps(written, sort_keys=True)
-    return found if is_so_written and _is_sound(found) else None
-
-
-def _is_sound(answer: Answer) -> bool:
-    languages = [*answer.shown, *answer.undrawn]
-    groups = (answer.shown,) if answer.ranking is None else answer.ranking
-    return (
-        VARIANTS.keys() >= set(languages)
-        and len(set(languages)) == len(languages) >= FEWEST
-        and sorted(name for group in groups for name in group) == sorted(answer.shown)
-        and (answer.ranking is None or all(answer.ranking))
-        and rater_named(answer.rater) == answer.rater
-        and _DATE.fullmatch(answer.date) is not None
-        and answer.pictures in STYLES
-        and answer.run >= 1
-        and 0 <= answer.number <= answer.count
-    )
+    last = {(answer.rater, answer.sheet): answer for answer in given}
+    there = {sheet.id for sheet in sheets(records)}
+    current = tuple(answer for answer in last.values() if answer.sheet in there)
+    return Study(current, len(last) - len(current))

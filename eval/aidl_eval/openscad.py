@@ -11,15 +11,13 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache, partial
 from pathlib import Path
-from types import MappingProxyType
 
 import numpy as np
 
-from aidl_eval import rendering
-from aidl_eval.regions import Regions, of_outlines
+from aidl_eval import rendering, shapes
+from aidl_eval.regions import Regions
 from aidl_eval.rendering import NOTHING, UNBOUNDED, Rendered, RenderedLanguage
 from aidl_eval.sandbox import fence
-from aidl_lang.common.colors import hexadecimal
 
 COMMAND = "openscad"
 _MOST = 48
@@ -34,7 +32,6 @@ _CORNER = re.compile(r"([^\s,MLz]+),([^\s,MLz]+)")
 _PLAIN = re.compile(r'//[^\n]*|/\*.*?(?:\*/|\Z)|"(?:\\.|[^"\\])*"', re.S)
 _FILES = re.compile(r"\b(?:include|use)\s*<|\b(?:import\w*|surface|dxf_\w+)\s*\(|\bfile\s*=")
 _AROUND = re.compile(r"(group\(\)|color\(|multmatrix\()")
-_COLOR = re.compile(r"color\(\[([\d.e-]+), ([\d.e-]+), ([\d.e-]+), [\d.e-]+\]\)")
 _MODULE = re.compile(r"\bmodule\s+\w+")
 _KNOB = re.compile(r"^\s*([A-Za-z_]\w*)\s*=\s*(-?\d+(?:\.\d+)?(?:[eE][+-]?\d+)?)\s*\Z")
 
@@ -50,7 +47,7 @@ class OpenScad(RenderedLanguage):
         return _unlockable(path) if path else "it is not installed"
 
     def reads(self, text: str) -> bool:
-        return self.run(text, parted=False)[0].ok
+        return render(text).ok
 
     def structures(self, program: str) -> int:
         """Counts the modules that a program defines."""
@@ -68,12 +65,11 @@ class OpenScad(RenderedLanguage):
                 start = index + 1
         return found
 
-    def run(
-        self, program: str, edits: Sequence[Mapping[str, float]] = ({},), parted: bool = True
-    ) -> list[Rendered]:
-        if parted:
-            return [_parted(program, edit) for edit in edits]
-        return [replace(render(program, edit), is_parted=False) for edit in edits]
+    def run(self, program: str, edits: Sequence[Mapping[str, float]] = ({},)) -> list[Rendered]:
+        return [_parted(program, edit) for edit in edits]
+
+    def judged(self, program: str) -> Rendered:
+        return render(program)
 
 
 @cache
@@ -83,7 +79,7 @@ def _unlockable(path: str) -> str | None:
     return f"`{path}` does not run locked in ({errors[0]})" if errors else None
 
 
-def render(program: str, knobs: Mapping[str, float] = MappingProxyType({})) -> Rendered:
+def render(program: str, knobs: Mapping[str, float] | None = None) -> Rendered:
     """Runs a program, with other values for some of its variables, and returns all it draws as one part. It
     is kept from reading files.
 
@@ -100,12 +96,21 @@ def render(program: str, knobs: Mapping[str, float] = MappingProxyType({})) -> R
     errors, warnings = _messages(text)
     if code:
         return Rendered(errors=errors or (_failure(code, text),), warnings=warnings)
-    return _outlined(drawn, errors, warnings)
+    outlines = [
+        np.array(_CORNER.findall(part), float) * (1.0, -1.0)
+        for path in _OUTLINE.findall(drawn)
+        for part in path.split("z")
+        if "," in part
+    ]
+    if not all((np.abs(outline) < rendering.LARGEST).all() for outline in outlines):
+        return Rendered(errors=(*errors, UNBOUNDED), warnings=warnings)
+    region = shapes.region(outlines)
+    return Rendered(Regions((region,) if region else ()), errors if region else (*errors, NOTHING), warnings)
 
 
-def _called(program: str, output: str, knobs: Mapping[str, float]) -> tuple[int | None, str, str]:
+def _called(program: str, output: str, knobs: Mapping[str, float] | None) -> tuple[int | None, str, str]:
     """Returns how OpenSCAD ended (None: late), what it said and what it wrote."""
-    values = [part for name, value in knobs.items() for part in ("-D", f"{name}={value!r}")]
+    values = [part for name, value in (knobs or {}).items() for part in ("-D", f"{name}={value!r}")]
     with tempfile.TemporaryDirectory() as folder:
         drawing, said = Path(folder, output), Path(folder, "said")
         Path(folder, "program.scad").write_text(program, "utf-8", errors="replace")
@@ -129,28 +134,29 @@ def _called(program: str, output: str, knobs: Mapping[str, float]) -> tuple[int 
 
 def _parted(program: str, knobs: Mapping[str, float]) -> Rendered:
     """Runs a program as `render` does, and draws what stands side by side in it as parts of their own, in
-    the order of writing: OpenSCAD itself unites them and drops their colours.
+    the order of writing: OpenSCAD itself unites them.
     """
     whole = render(program, knobs)
     if not whole.ok:
         return whole
     code, _, tree = _called(program, "tree.csg", knobs)
-    pieces = parts(tree) if code == 0 and len(tree) <= _TREE else []
-    drawn = [(render(text) if len(pieces) > 1 else whole, color) for text, color in pieces or [("", None)]]
-    found = (replace(part, color=color) for each, color in drawn for part in each.regions.parts)
-    return replace(whole, regions=Regions(tuple(found)))
+    texts = parts(tree) if code == 0 and len(tree) <= _TREE else []
+    if len(texts) < 2:
+        return whole
+    drawn = tuple(part for text in texts for part in render(text).regions.parts)
+    return replace(whole, regions=Regions(drawn))
 
 
-def parts(tree: str) -> list[tuple[str, str | None]]:
+def parts(tree: str) -> list[str]:
     """Returns the subtrees of a tree (as OpenSCAD writes it) that stand side by side, each as a text that
-    draws it alone, with its colour: what groups, moves and colours hold, down to the first operation on
-    shapes. Where they are too many, those of a level further up.
+    draws it alone: what groups, moves and colours hold, down to the first operation on shapes. Where they
+    are too many, those of a level further up.
     """
     lines = [line.strip() for line in tree.splitlines() if line.strip()]
-    level = [_Node(tuple(lines), "", "", None)] if lines else []
+    level = [_Node(tuple(lines))] if lines else []
     while (finer := [inner for node in level for inner in _opened(node)]) != level and len(finer) <= _MOST:
         level = finer
-    return [(n.before + "\n".join(n.lines) + n.after, n.color) for n in level]
+    return [node.before + "\n".join(node.lines) + node.after for node in level]
 
 
 @dataclass(frozen=True)
@@ -158,9 +164,8 @@ class _Node:
     """Lines of a tree that belong together, within opening and closing ones of moves around it."""
 
     lines: tuple[str, ...]
-    before: str
-    after: str
-    color: str | None
+    before: str = ""
+    after: str = ""
 
 
 def _opened(node: _Node) -> list[_Node]:
@@ -175,10 +180,8 @@ def _opened(node: _Node) -> list[_Node]:
         return []  # an empty group
     inner = node.lines[1:-1]
     if head.startswith("multmatrix"):
-        return [_Node(inner, f"{node.before}{head}\n", f"\n}}{node.after}", node.color)]
-    named = _COLOR.match(head)
-    color = node.color or (hexadecimal([255 * float(part) for part in named.groups()]) if named else None)
-    return [_Node(inner, node.before, node.after, color)]
+        return [_Node(inner, f"{node.before}{head}\n", f"\n}}{node.after}")]
+    return [replace(node, lines=inner)]
 
 
 def _statements(lines: Sequence[str]) -> list[tuple[str, ...]]:
@@ -223,17 +226,3 @@ def _failure(code: int, text: str) -> str:
     if "3D object" in text:
         return "error: the drawing must be flat, not a solid: do without extrusion, `cube`, `sphere` …"
     return NOTHING
-
-
-def _outlined(svg: str, errors: tuple[str, ...], warnings: tuple[str, ...]) -> Rendered:
-    outlines = [
-        np.array(_CORNER.findall(part), float) * (1.0, -1.0)
-        for path in _OUTLINE.findall(svg)
-        for part in path.split("z")
-        if "," in part
-    ]
-    if not outlines:
-        return Rendered(errors=(*errors, NOTHING), warnings=warnings)
-    if not all((np.abs(outline) < rendering.LARGEST).all() for outline in outlines):
-        return Rendered(errors=(*errors, UNBOUNDED), warnings=warnings)
-    return Rendered(of_outlines([(outlines, None)]), errors, warnings)

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field, replace
+import hashlib
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import Any
 
 from aidl_eval.openscad import OpenScad
 from aidl_eval.python_cad import PythonCad
-from aidl_eval.rendering import Wrapped
 from aidl_eval.requirements import Prompt
 from aidl_eval.svg import Svg
 from aidl_lang.checking.subset import Variant
@@ -26,32 +26,8 @@ VARIANTS: dict[str, Language] = {
 """All languages by name. To add one, see `rendering.RenderedLanguage`."""
 
 
-@dataclass(frozen=True)
-class Switches:
-    """The help that a conversation has. Without a guide a model is told the name of the language alone."""
-
-    guide: bool = True
-    mends: bool = True
-    recovers: bool = True
-    plans: bool = True
-
-
-class Guideless(Wrapped):
-    """A language without its guide."""
-
-    def guide(self) -> str:
-        name = _NAMES.get(self.name, "AIDL")
-        fence = self.fences[0]
-        block = f"Answer with the whole program in one ```{fence} block."
-        return f"You write programs in {name} that draw flat parts. {block}\n"
-
-
-_NAMES = {
-    "openscad": "OpenSCAD",
-    "build123d": "Python with build123d",
-    "cadquery": "Python with CadQuery",
-    "svg": "SVG",
-}
+GUIDE = "guide of "
+"""What names of settings begin with that tell the guide of a language, or of a conversation."""
 
 
 @dataclass(frozen=True, order=True)
@@ -74,27 +50,23 @@ def key_of(record: Mapping[str, Any]) -> str:
 
 @dataclass(frozen=True)
 class Plan:
-    """`settings.sampling.seed` is that of the first run; each further one counts up from it."""
+    """The conversations to be had. `settings.sampling.seed` is that of the first run; each further one counts
+    up from it. Without help no program in AIDL is mended, added to, or taken as a plan. `facts` are what
+    results in one folder have in common besides, and what their readers must know.
+    """
 
-    prompts: tuple[Prompt, ...]
-    variants: tuple[str, ...]
-    runs: int
+    prompts: Sequence[Prompt]
+    jobs: Sequence[Job]
     settings: Settings
-    switches: Switches = field(default_factory=Switches)
+    has_help: bool
+    facts: Mapping[str, str]
 
     def language(self, variant: str) -> Language:
         """Returns a language with the help that this plan gives."""
-        language, on = VARIANTS[variant], self.switches
-        if isinstance(language, Aidl):
-            language = replace(language, mends=on.mends, recovers=on.recovers, plans=on.plans)
-        return language if on.guide else Guideless(language)
-
-    def jobs(self) -> Iterator[Job]:
-        """Yields all jobs, the first run of everything first."""
-        for run in range(1, self.runs + 1):
-            for prompt in self.prompts:
-                for variant in self.variants:
-                    yield Job(prompt.name, variant, run)
+        language = VARIANTS[variant]
+        if isinstance(language, Aidl) and not self.has_help:
+            return replace(language, mends=False, recovers=False, plans=False)
+        return language
 
     def prompt(self, job: Job) -> Prompt:
         return next(prompt for prompt in self.prompts if prompt.name == job.prompt)
@@ -104,3 +76,16 @@ class Plan:
         first = self.settings.sampling.seed
         seed = None if first is None else first + job.run - 1
         return replace(self.settings, sampling=replace(self.settings.sampling, seed=seed))
+
+
+def asked(
+    prompts: Sequence[Prompt], variants: Sequence[str], runs: int, settings: Settings, has_help: bool
+) -> Plan:
+    """Returns the plan to ask a model, the first run of everything first."""
+    jobs = [Job(p.name, v, run) for run in range(1, runs + 1) for p in prompts for v in variants]
+    guides = {f"{GUIDE}{name}": digest(VARIANTS[name].guide()) for name in variants}
+    return Plan(prompts, jobs, settings, has_help, guides)
+
+
+def digest(text: str) -> str:
+    return hashlib.sha256(text.encode("utf-8", "surrogatepass")).hexdigest()[:16]

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 
 from aidl_eval import sandboxed
@@ -32,11 +33,10 @@ class PythonCad(RenderedLanguage):
 
     def knobs(self, program: str) -> Mapping[str, float]:
         """Returns the names at the top level that are numbers as written, and are given once."""
-        return {name: value for name, value, _, _ in _constants(program)}
+        tree = _parsed(program)
+        return {name: float(value) for name, (value, _) in _constants(tree).items()} if tree else {}
 
-    def run(
-        self, program: str, edits: Sequence[Mapping[str, float]] = ({},), parted: bool = True
-    ) -> list[Rendered]:
+    def run(self, program: str, edits: Sequence[Mapping[str, float]] = ({},)) -> list[Rendered]:
         return sandboxed.run(self.name, [_edited(program, edit) for edit in edits])
 
 
@@ -47,43 +47,32 @@ def _parsed(program: str) -> ast.Module | None:
         return None
 
 
-def _constants(program: str) -> Iterator[tuple[str, float, int, int]]:
-    """Yields name, value, and where the value stands in the program's UTF-8 text."""
-    tree = _parsed(program)
-    starts = [0]
-    for line in program.encode().splitlines(keepends=True):
-        starts.append(starts[-1] + len(line))
-    given = [_assigned(node) for node in tree.body] if tree else []
-    names = [name for name, _ in filter(None, given)]
-    for name, value in filter(None, given):
-        sign, bare = 1, value
-        if isinstance(value, ast.UnaryOp) and isinstance(value.op, ast.USub):
-            sign, bare = -1, value.operand
-        is_number = isinstance(bare, ast.Constant) and type(bare.value) in (int, float)
-        if is_number and names.count(name) == 1:
-            assert value.end_lineno is not None
-            assert value.end_col_offset is not None
-            start = starts[value.lineno - 1] + value.col_offset
-            end = starts[value.end_lineno - 1] + value.end_col_offset
-            yield name, sign * float(bare.value), start, end  # type: ignore[attr-defined]
-
-
-def _assigned(node: ast.stmt) -> tuple[str, ast.expr] | None:
-    match node:
-        case ast.Assign(targets=[ast.Name(id=name)], value=value):
-            return name, value
-        case ast.AnnAssign(target=ast.Name(id=name), value=ast.expr() as value):
-            return name, value
-        case _:
-            return None
+def _constants(tree: ast.Module) -> dict[str, tuple[int | float, ast.Assign | ast.AnnAssign]]:
+    """Returns the numbers at the top level by their names, with the statements that give them."""
+    given = list[tuple[str, ast.expr, ast.Assign | ast.AnnAssign]]()
+    for node in tree.body:
+        match node:
+            case ast.Assign(targets=[ast.Name(id=name)], value=value):
+                given.append((name, value, node))
+            case ast.AnnAssign(target=ast.Name(id=name), value=ast.expr() as value):
+                given.append((name, value, node))
+    names = [name for name, _, _ in given]
+    found = dict[str, tuple[int | float, ast.Assign | ast.AnnAssign]]()
+    for name, value, node in given:
+        with suppress(ValueError, TypeError, RecursionError):  # it is no literal
+            number = ast.literal_eval(value)
+            if type(number) in (int, float) and names.count(name) == 1:
+                found[name] = number, node
+    return found
 
 
 def _edited(program: str, edit: Mapping[str, float]) -> str:
     """Returns the program with other values for some of its knobs; whole numbers stay whole."""
-    text = program.encode()
-    for name, _, start, end in sorted(_constants(program), key=lambda found: -found[2]) if edit else ():
+    tree = _parsed(program) if edit else None
+    if tree is None:
+        return program
+    for name, (was, node) in _constants(tree).items():
         if name in edit:
-            value, was = edit[name], text[start:end].decode()
-            is_whole = was.lstrip("-").isdecimal() and float(value).is_integer()
-            text = text[:start] + (str(int(value)) if is_whole else repr(float(value))).encode() + text[end:]
-    return text.decode()
+            is_whole = isinstance(was, int) and edit[name].is_integer()
+            node.value = ast.Constant(int(edit[name]) if is_whole else edit[name])
+    return ast.unparse(tree)

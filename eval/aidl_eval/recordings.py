@@ -6,37 +6,29 @@ replayed may hold several such files.
 
 from __future__ import annotations
 
-import hashlib
+import datetime
 import json
-import math
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
-from datetime import date
-from difflib import get_close_matches
+import re
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
-from typing import Any, NoReturn
+from typing import Any
 
-from aidl_eval.plan import VARIANTS, Job, Plan, key_of
+from aidl_eval import strict
+from aidl_eval.plan import GUIDE, VARIANTS, Job, Plan, digest, key_of
 from aidl_eval.requirements import Prompt
 from aidl_lang import SourceFile
+from aidl_lang.common.names import nearest
+from aidl_lang.common.prose import did_you_mean
 from aidl_lang.tools.cli.files import UseError
 from aidl_lang.tools.llm.generation import Settings
-from aidl_lang.tools.llm.messages import (
-    ConversationOver,
-    Finish,
-    Message,
-    Reply,
-    Sampling,
-    Usage,
-)
+from aidl_lang.tools.llm.messages import ConversationOver, Finish, Message, Reply, Sampling, Usage
 
 VERSION = 1
 SUFFIX = ".jsonl"
-RECORDING, NOTE, GUIDE = "recording of ", "note on ", "guide of "
-"""What names of settings begin with."""
-_NAME = "aidl_recording"
-_LARGEST = 256 << 20
-"""Most bytes of a file."""
+_RECORDING, _NOTE = "recording of ", "note on "
+"""What names of settings begin with, as `GUIDE`."""
+_FORM = f"a recording has one JSON object a line, in files `*{SUFFIX}`; eval/README.md has its members"
 
 
 class RecordingError(UseError):
@@ -44,202 +36,125 @@ class RecordingError(UseError):
 
 
 @dataclass(frozen=True)
-class Recorded:
-    """One conversation; `guide` tells what the model had read, `note` what readers of figures must know."""
+class _Reply:
+    """A reply as it is written."""
 
-    job: Job
     text: str
-    replies: tuple[Reply, ...]
+    model: str | None = None
+    date: datetime.date | None = None
+    finish: Finish = Finish.COMPLETE
+    input: int | None = None
+    output: int | None = None
+    cost: float | None = None
+    seconds: float | None = None
+
+    def __post_init__(self) -> None:
+        for number in (self.input, self.output, self.cost, self.seconds):
+            if number is not None and not 0 <= number < 1e15:
+                raise ValueError("a number is to be from 0 on")
+
+
+@dataclass(frozen=True)
+class Recorded:
+    """One conversation as it is written; `guide` tells what the model had read, `note` what readers of
+    figures must know.
+    """
+
+    aidl_recording: int
+    prompt: str
+    variant: str
+    run: int
+    replies: tuple[_Reply, ...]
+    text: str | None = None
+    model: str | None = None
+    date: datetime.date | None = None
     guide: str | None = None
     note: str | None = None
-    line: str = ""
+
+    def __post_init__(self) -> None:
+        for is_so, wanted in (
+            (self.aidl_recording == VERSION, f"`aidl_recording` is to be {VERSION}"),
+            # also a folder of the results
+            (
+                re.fullmatch(r"[\w-]{1,100}", self.prompt),
+                "`prompt` is to be a name of letters, digits, `_` and `-`",
+            ),
+            (self.variant in VARIANTS, f"`variant` is to be one of {', '.join(VARIANTS)}"),
+            (1 <= self.run <= 10_000, "`run` is to be a whole number from 1 to 10000"),
+            (self.replies, "`replies` is to be a list with at least one reply"),
+        ):
+            if not is_so:
+                raise ValueError(wanted)
 
     @property
-    def digest(self) -> str:
-        return hashlib.sha256(self.line.encode()).hexdigest()[:16]
+    def job(self) -> Job:
+        return Job(self.prompt, self.variant, self.run)
+
+    @property
+    def asked(self) -> str:
+        return self.text or self.prompt.replace("_", " ")
+
+    def reply(self, number: int) -> Reply:
+        said = self.replies[number]
+        day = said.date or self.date
+        return Reply(
+            said.text,
+            Usage(said.input, said.output, said.cost),
+            said.finish,
+            said.model or self.model or "",
+            said.seconds,
+            day.isoformat() if day else None,
+        )
 
 
 # --- reading ----------------------------------------------------------------------------------------
 
 
-def load(place: Path) -> tuple[Recorded, ...]:
+def load(place: Path) -> dict[Job, Recorded]:
     """Returns the conversations of a file, or of all files `*.jsonl` of a folder. Raises RecordingError."""
     found: dict[Job, Recorded] = {}
-    for file in _files(place):
-        for where, line in _lines(file):
-            conversation = _conversation(line, where)
-            if conversation.job in found:
-                _refuse(where, f"the conversation `{conversation.job.key}` stands there twice")
-            found[conversation.job] = conversation
+    try:
+        for file in sorted(place.glob(f"*{SUFFIX}")) if place.is_dir() else [place]:
+            for number, line in enumerate(file.read_text(encoding="utf-8").split("\n"), 1):
+                if line.strip():
+                    conversation = _conversation(line, where := f"{file}:{number}")
+                    if conversation.job in found:
+                        raise _refused(where, f"the conversation `{conversation.job.key}` stands there twice")
+                    found[conversation.job] = conversation
+    except OSError as error:
+        raise RecordingError("E0993", f"`{place}` cannot be read: {error.strerror or error}") from None
+    except UnicodeDecodeError:
+        raise RecordingError("E0993", f"`{place}` is not UTF-8", _FORM) from None
     if not found:
         raise RecordingError("E0993", f"`{place}` holds no conversation", _FORM)
-    return tuple(found.values())
-
-
-_FORM = f"a recording has one JSON object a line, in files `*{SUFFIX}`; eval/README.md has its members"
-
-
-def _files(place: Path) -> list[Path]:
-    try:
-        return sorted(place.glob(f"*{SUFFIX}")) if place.is_dir() else [place]
-    except OSError as error:
-        raise _unreadable(place, error) from None
-
-
-def _lines(file: Path) -> Iterator[tuple[str, str]]:
-    try:
-        if not file.is_file():
-            raise RecordingError("E0993", f"`{file}` is no file and no folder", _FORM)
-        if file.stat().st_size > _LARGEST:
-            large = f"`{file}` is larger than {_LARGEST >> 20} MB"
-            raise RecordingError("E0993", large, "part it into several files of a folder")
-        text = file.read_text(encoding="utf-8")
-    except OSError as error:
-        raise _unreadable(file, error) from None
-    except UnicodeDecodeError:
-        raise RecordingError("E0993", f"`{file}` is not UTF-8", _FORM) from None
-    for number, line in enumerate(text.split("\n"), 1):
-        if line.strip():
-            yield f"{file}:{number}", line
-
-
-def _unreadable(place: Path, error: OSError) -> RecordingError:
-    return RecordingError("E0993", f"`{place}` cannot be read: {error.strerror or error}")
-
-
-def _refuse(where: str, why: str) -> NoReturn:
-    raise RecordingError("E0993", f"`{where}` is no conversation: {why}", _FORM)
-
-
-_MEMBERS = frozenset({_NAME, "prompt", "text", "variant", "run", "model", "date", "guide", "note", "replies"})
-_OF_REPLY = frozenset({"text", "model", "date", "finish", "input", "output", "cost", "seconds"})
+    return found
 
 
 def _conversation(line: str, where: str) -> Recorded:
     try:
         said = json.loads(line)
+        if isinstance(said, dict) and isinstance(said.get("replies"), list):
+            said["replies"] = [{"text": r} if isinstance(r, str) else r for r in said["replies"]]
+        return strict.read(said, Recorded)
+    except strict.WrongError as error:
+        raise _refused(where, str(error)) from None
     except (ValueError, RecursionError) as error:
-        _refuse(where, f"it is no JSON ({str(error)[:80]})")
-    reader = _Reader(said, where, "", _MEMBERS)
-    if said.get(_NAME) != VERSION:
-        _refuse(where, f"`{_NAME}` is to be {VERSION}")
-    job = Job(reader.name("prompt"), reader.variant(), reader.run())
-    replies = said.get("replies")
-    if not isinstance(replies, list) or not replies:
-        _refuse(where, "`replies` is to be a list with at least one reply")
-    model, day = reader.text("model"), reader.date("date")
-    return Recorded(
-        job,
-        reader.text("text") or job.prompt.replace("_", " "),
-        tuple(_reply(reply, where, number, model, day) for number, reply in enumerate(replies, 1)),
-        reader.text("guide"),
-        reader.text("note"),
-        line.strip(),
-    )
+        raise _refused(where, f"it is no JSON ({str(error)[:80]})") from None
 
 
-def _reply(said: object, where: str, number: int, model: str | None, day: str | None) -> Reply:
-    if isinstance(said, str):
-        return Reply(said, Usage(None, None, None), Finish.COMPLETE, model or "", date=day)
-    reader = _Reader(said, where, f"replies[{number}].", _OF_REPLY)
-    text = reader.text("text")
-    if text is None:
-        _refuse(where, f"`replies[{number}].text` is missing")
-    finish = reader.text("finish") or Finish.COMPLETE
-    if finish not in tuple(Finish):
-        _refuse(where, f"`replies[{number}].finish` is to be one of {', '.join(Finish)}")
-    usage = Usage(reader.whole("input"), reader.whole("output"), reader.number("cost"))
-    return Reply(
-        text,
-        usage,
-        Finish(finish),
-        reader.text("model") or model or "",
-        reader.number("seconds"),
-        reader.date("date") or day,
-    )
-
-
-class _Reader:
-    """Takes the members of an object, each by its kind."""
-
-    def __init__(self, said: object, where: str, within: str, known: frozenset[str]) -> None:
-        if not isinstance(said, dict):
-            _refuse(where, f"{f'`{within[:-1]}`' if within else 'it'} is to be an object, as in {{…}}")
-        if strange := sorted(map(str, said.keys() - known)):
-            there = ", ".join(sorted(known))
-            _refuse(where, f"it has no member `{within}{strange[0][:60]}`; there are {there}")
-        self._said, self._where, self._within = said, where, within
-
-    def _wrong(self, name: str, wanted: str) -> NoReturn:
-        _refuse(self._where, f"`{self._within}{name}` is to be {wanted}")
-
-    def text(self, name: str) -> str | None:
-        found = self._said.get(name)
-        if found is not None and not isinstance(found, str):
-            self._wrong(name, "a text, or null where it is not known")
-        return found
-
-    def name(self, name: str) -> str:
-        """Returns a name, which also is the name of a folder of the results."""
-        found = self.text(name)
-        if found is None or not found.replace("_", "a").replace("-", "a").isalnum() or len(found) > 100:
-            self._wrong(name, "a name of letters, digits, `_` and `-`")
-        return found
-
-    def variant(self) -> str:
-        found = self.text("variant")
-        if found not in VARIANTS:
-            self._wrong("variant", f"one of {', '.join(VARIANTS)}")
-        return found
-
-    def run(self) -> int:
-        found = self.whole("run")
-        if found is None or not 1 <= found <= 10_000:
-            self._wrong("run", "a whole number from 1 to 10000")
-        return found
-
-    def date(self, name: str) -> str | None:
-        found = self.text(name)
-        try:
-            return found and date.fromisoformat(found).isoformat()
-        except ValueError:
-            self._wrong(name, "a day as in 2026-01-31, or null where it is not known")
-
-    def whole(self, name: str) -> int | None:
-        found = self.number(name)
-        if found is not None and found != int(found):
-            self._wrong(name, "a whole number")
-        return None if found is None else int(found)
-
-    def number(self, name: str) -> float | None:
-        found = self._said.get(name)
-        is_number = isinstance(found, int | float) and not isinstance(found, bool)
-        if found is not None and not (is_number and 0 <= found < 1e15 and math.isfinite(found)):
-            self._wrong(name, "a number from 0 on, or null where it is not known")
-        return found
+def _refused(where: str, why: str) -> RecordingError:
+    return RecordingError("E0993", f"`{where}` is no conversation: {why}", _FORM)
 
 
 # --- replaying --------------------------------------------------------------------------------------
 
 
 @dataclass(frozen=True)
-class Replay:
-    """Takes the place of a provider. It keeps no state, so that threads may share it."""
-
-    name: str
-    conversations: Mapping[Job, Recorded]
-
-    def of(self, job: Job) -> Speaker:
-        """Returns the provider of one conversation."""
-        return Speaker(self.name, self.conversations[job])
-
-
-@dataclass(frozen=True)
 class Speaker:
-    """A provider of the replies of one conversation, in order."""
+    """A provider of the replies of one conversation, in order. It keeps no state."""
 
-    name: str
     recorded: Recorded
+    name: str = "recording"
     takes_seeds: bool = False
     takes_grammars: bool = False
 
@@ -248,80 +163,52 @@ class Speaker:
         had = sum(message.role == "assistant" for message in messages)
         if had >= len(self.recorded.replies):
             raise ConversationOver
-        reply = self.recorded.replies[had]
+        reply = self.recorded.reply(had)
         hear(reply.text)
         return reply
 
 
-@dataclass(frozen=True)
-class RecordedPlan(Plan):
-    """The plan whose jobs are the conversations of a recording, in their order."""
-
-    recorded: tuple[Recorded, ...] = field(default=())
-
-    def jobs(self) -> Iterator[Job]:
-        for conversation in self.recorded:
-            yield conversation.job
-
-    @property
-    def facts(self) -> dict[str, str]:
-        """Returns what results must have in common to stand in one folder, and what readers must know."""
-        found = {}
-        for conversation in self.recorded:
-            key = conversation.job.key
-            found[f"{RECORDING}{key}"] = conversation.digest
-            found[f"{NOTE}{key}"] = conversation.note or ""
-            found[f"{GUIDE}{key}"] = conversation.guide or ""
-        return found
-
-
 def chosen(
-    recorded: Sequence[Recorded], prompts: Sequence[str], variants: Sequence[str], runs: int | None
-) -> tuple[Recorded, ...]:
+    recorded: Iterable[Recorded], prompts: Sequence[str], variants: Sequence[str], runs: int | None
+) -> list[Recorded]:
     """Returns the conversations about some prompts (none: all), in some variants. Raises RecordingError."""
-    known = dict.fromkeys(conversation.job.prompt for conversation in recorded)
+    recorded = list(recorded)
+    known = dict.fromkeys(one.prompt for one in recorded)
     for name in prompts:
         if name not in known:
-            near = get_close_matches(name, known, n=1)
-            hint = f"did you mean `{near[0]}`?" if near else f"there are {', '.join(known)}"
-            raise RecordingError("E0994", f"the recording has no prompt `{name}`", hint)
-    found = tuple(
-        conversation
-        for conversation in recorded
-        if (not prompts or conversation.job.prompt in prompts)
-        and conversation.job.variant in variants
-        and (runs is None or conversation.job.run <= runs)
-    )
+            hints = did_you_mean(nearest(name, known)) or [f"there are {', '.join(known)}"]
+            raise RecordingError("E0994", f"the recording has no prompt `{name}`", *hints)
+    found = [
+        one
+        for one in recorded
+        if one.prompt in (prompts or known) and one.variant in variants and (runs is None or one.run <= runs)
+    ]
     if not found:
-        there = ", ".join(dict.fromkeys(conversation.job.variant for conversation in recorded))
+        there = ", ".join(dict.fromkeys(one.variant for one in recorded))
         raise RecordingError("E0994", "the recording has no such conversations", f"its variants are {there}")
     return found
 
 
-def plan(recorded: Sequence[Recorded], known: Iterable[Prompt], settings: Settings) -> RecordedPlan:
+def plan(recorded: Sequence[Recorded], known: Mapping[str, Prompt], settings: Settings) -> Plan:
     """Returns the plan of some conversations. Where a prompt is `known`, what it requires is examined; it is
     asked for in the words of the recording.
     """
-    by_name = {prompt.name: prompt for prompt in known}
     prompts = dict[str, Prompt]()
-    for conversation in recorded:
-        name, text = conversation.job.prompt, conversation.text
-        bare = Prompt(name, text, (), (), {}, SourceFile(f"{name}.aidl", ""))
-        asked = prompts.setdefault(name, replace(by_name.get(name, bare), text=text))
+    facts = dict[str, str]()
+    for one in recorded:
+        name, text = one.prompt, one.asked
+        bare = Prompt(name, text, (), SourceFile(f"{name}.aidl", ""))
+        asked = prompts.setdefault(name, replace(known.get(name, bare), text=text))
         if asked.text != text:
             raise RecordingError(
                 "E0995",
                 f"the recording asks for `{name}` in two ways: `{asked.text[:60]}` and `{text[:60]}`",
                 "give one of them another name",
             )
-    used = {conversation.job.variant for conversation in recorded}
-    return RecordedPlan(
-        tuple(prompts.values()),
-        tuple(name for name in VARIANTS if name in used),
-        max(conversation.job.run for conversation in recorded),
-        settings,
-        recorded=tuple(recorded),
-    )
+        facts[f"{_RECORDING}{one.job.key}"] = digest(repr(one.replies))
+        facts[f"{_NOTE}{one.job.key}"] = one.note or ""
+        facts[f"{GUIDE}{one.job.key}"] = one.guide or ""
+    return Plan(list(prompts.values()), [one.job for one in recorded], settings, True, facts)
 
 
 # --- writing ----------------------------------------------------------------------------------------
@@ -331,9 +218,9 @@ def notes(records: Iterable[Mapping[str, Any]], settings: Mapping[str, Any]) -> 
     """Returns what must be known of conversations, each note once, after the languages that it is about."""
     about: dict[str, dict[str, None]] = {}
     for r in records:
-        if note := settings.get(f"{NOTE}{key_of(r)}"):
+        if note := settings.get(f"{_NOTE}{key_of(r)}"):
             about.setdefault(note, {})[r["variant"]] = None
-    return tuple(f"{', '.join(variants)}: {note}" for note, variants in about.items())
+    return tuple(f"Note on {', '.join(variants)}: {note}." for note, variants in about.items())
 
 
 def written(records: Iterable[Mapping[str, Any]], settings: Mapping[str, Any]) -> str:
@@ -342,23 +229,13 @@ def written(records: Iterable[Mapping[str, Any]], settings: Mapping[str, Any]) -
 
 
 def _line(kept: Mapping[str, Any], settings: Mapping[str, Any]) -> str:
-    key = key_of(kept)
-    replies = [
-        {
-            "text": attempt["reply"],
-            "model": attempt["model"] or None,
-            "date": attempt.get("date"),
-            "finish": attempt["finish"],
-            **attempt["usage"],
-            "seconds": attempt.get("seconds"),
-        }
-        for attempt in kept["attempts"]
-    ]
-    said = {
-        _NAME: VERSION,
-        **{name: kept[name] for name in ("prompt", "text", "variant", "run")},
-        "guide": settings.get(f"{GUIDE}{key}", settings.get(f"{GUIDE}{kept['variant']}")) or None,
-        "note": settings.get(f"{NOTE}{key}") or None,
-        "replies": replies,
-    }
-    return json.dumps(said, ensure_ascii=False) + "\n"
+    key, variant = key_of(kept), kept["variant"]
+    replies = tuple(
+        _Reply(a["reply"], a["model"] or None, a["date"], a["finish"], **a["usage"], seconds=a["seconds"])
+        for a in kept["attempts"]
+    )
+    guide = settings.get(f"{GUIDE}{key}", settings.get(f"{GUIDE}{variant}")) or None
+    note = settings.get(f"{_NOTE}{key}") or None
+    about = kept["prompt"], variant, kept["run"]
+    said = Recorded(VERSION, *about, replies, text=kept["text"], guide=guide, note=note)
+    return json.dumps(asdict(said), ensure_ascii=False) + "\n"

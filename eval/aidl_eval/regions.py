@@ -1,20 +1,19 @@
-"""What a program draws, in any language: coloured areas of the plane in mm, back to front, and lines."""
+"""What a program draws, in any language: areas of the plane in mm, back to front, and lines."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
 
 from aidl_eval import shapes
-from aidl_eval.things import covered, drawn
 from aidl_lang.geometry.boolean import common
 from aidl_lang.geometry.curves import Piece
-from aidl_lang.geometry.drawing import Drawing
+from aidl_lang.geometry.drawing import Drawing, draw
 from aidl_lang.geometry.region import Polygon, Region
-from aidl_lang.geometry.solved import SolvedModel, SolvedStructure
+from aidl_lang.geometry.solved import Frame, SolvedGeometry, SolvedModel, SolvedStructure
 from aidl_lang.geometry.styles import stacked
 
 FINE = 2e-4
@@ -22,18 +21,10 @@ FINE = 2e-4
 
 
 @dataclass(frozen=True)
-class Part:
-    """An area that is drawn as one; `color` is a CSS colour, None where the program names none."""
-
-    region: Region
-    color: str | None = None
-
-
-@dataclass(frozen=True)
 class Regions:
-    """Parts from back to front, and curves drawn as lines, which lie above them all."""
+    """Areas that are drawn as one each, from back to front, and curves drawn as lines, above them all."""
 
-    parts: tuple[Part, ...] = ()
+    parts: tuple[Region, ...] = ()
     lines: tuple[tuple[Piece, ...], ...] = field(default=())
 
     def __bool__(self) -> bool:
@@ -42,13 +33,13 @@ class Regions:
     @cached_property
     def size(self) -> float:
         """The larger side of the box around the parts."""
-        boxes = np.array([part.region.box for part in self.parts] or [(0.0, 0.0, 0.0, 0.0)])
+        boxes = np.array([part.box for part in self.parts] or [(0.0, 0.0, 0.0, 0.0)])
         return float(max(boxes[:, 2].max() - boxes[:, 0].min(), boxes[:, 3].max() - boxes[:, 1].min()))
 
     @cached_property
     def outlines(self) -> tuple[tuple[Polygon, ...], ...]:
         """The outlines of each part as polygons; holes run clockwise."""
-        return tuple(tuple(p.region.polygons(FINE * (self.size or 1.0))) for p in self.parts)
+        return tuple(tuple(p.polygons(FINE * (self.size or 1.0))) for p in self.parts)
 
     @cached_property
     def whole(self) -> Region:
@@ -65,12 +56,6 @@ class Regions:
         return tuple(reversed(seen))
 
 
-def of_outlines(parts: Iterable[tuple[Sequence[Polygon], str | None]]) -> Regions:
-    """Returns the regions inside an odd number of a part's outlines each; parts without area are left out."""
-    drawn = ((shapes.region(outlines), color) for outlines, color in parts)
-    return Regions(tuple(Part(region, color) for region, color in drawn if region))
-
-
 def of_drawing(model: SolvedModel, drawing: Drawing) -> Regions:
     """Returns the bodies of AIDL's drawing, each taken apart into the outlines that it was united of, as far
     as they are seen in it; and strokes as lines.
@@ -79,29 +64,34 @@ def of_drawing(model: SolvedModel, drawing: Drawing) -> Regions:
     outline: a drawing of one solid has as many parts as the same outlines in a solid each.
     """
     bodies = {body.path: body.region for body in drawing.bodies}
-    parts = list[Part]()
+    parts = list[Region]()
     for structure in stacked(model.root):
         if structure.path in bodies:
             body = bodies[structure.path]
-            found = tuple(_within(structure, body, drawing, is_cut=False))
-            parts += found if len(found) > 1 else (Part(body, _color(drawing, structure.path)),)
+            found = tuple(_within(structure, body, is_cut=False))
+            parts += found if len(found) > 1 else (body,)
     lines = tuple(stroke.pieces for stroke in drawing.strokes if stroke.pieces)
     return Regions(tuple(parts), lines)
 
 
-def _within(structure: SolvedStructure, body: Region, drawing: Drawing, *, is_cut: bool) -> Iterator[Part]:
+def _within(structure: SolvedStructure, body: Region, *, is_cut: bool) -> Iterator[Region]:
     """Yields the outlines in a structure and what it holds. Where holes are cut they are one part, as in a
     difference of their union, so that the edge of a hole is there once.
     """
     if structure.kind == "solid":
         is_cut = is_cut or any(child.kind == "hole" for child in structure.structures)
-        outlines = drawn(structure)
+        outlines = [g for g in structure.drawn if not g.construction and g.type != "point"]
         for group in (outlines,) if is_cut else zip(outlines):
-            if seen := common(covered(group), body):
-                yield Part(seen, _color(drawing, structure.path))
+            if seen := common(_covered(group), body):
+                yield seen
     for child in structure.structures:
-        yield from _within(child, body, drawing, is_cut=is_cut)
+        yield from _within(child, body, is_cut=is_cut)
 
 
-def _color(drawing: Drawing, path: str) -> str | None:
-    return drawing.styles[path].color
+def _covered(outlines: Sequence[SolvedGeometry]) -> Region:
+    """Returns what outlines cover when nothing else is drawn."""
+    nowhere = Frame(0.0, 0.0, 0.0)
+    alone = SolvedStructure(
+        "it", "it", "solid", "top", nowhere, {}, {}, tuple(outlines), (), None, False, None
+    )
+    return draw(SolvedModel("solved", alone))[0].regions.get("it", Region())

@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from aidl_eval.regions import Regions
-from aidl_lang.tools.llm.messages import Conversation, Language, Verdict
+from aidl_lang.tools.llm.messages import Verdict
 
 SECONDS = 30
 """Seconds that a program may run."""
@@ -36,8 +36,6 @@ class Rendered:
     regions: Regions = field(default_factory=Regions)
     errors: tuple[str, ...] = ()
     warnings: tuple[str, ...] = ()
-    is_parted: bool = True
-    """False if all that is drawn was handed over as one part."""
 
     @property
     def ok(self) -> bool:
@@ -71,54 +69,26 @@ class RenderedLanguage(ABC):
         """Returns the named numbers that somebody who edits a program would turn."""
 
     @abstractmethod
-    def run(
-        self, program: str, edits: Sequence[Mapping[str, float]] = ({},), parted: bool = True
-    ) -> list[Rendered]:
-        """Runs a program once for each edit, with these values for some of its knobs. Unless `parted`, it may
-        hand over all that is drawn as one part.
-        """
+    def run(self, program: str, edits: Sequence[Mapping[str, float]] = ({},)) -> list[Rendered]:
+        """Runs a program once for each edit, with these values for some of its knobs."""
 
-
-@dataclass(frozen=True)
-class Wrapped:
-    """A language that does all as another does, but for what a subclass changes."""
-
-    language: Language
-
-    @property
-    def name(self) -> str:
-        return self.language.name
-
-    @property
-    def suffix(self) -> str:
-        return self.language.suffix
-
-    @property
-    def fences(self) -> tuple[str, ...]:
-        return self.language.fences
-
-    def guide(self) -> str:
-        return self.language.guide()
-
-    def reads(self, text: str) -> bool:
-        return self.language.reads(text)
-
-    def conversation(self, before: str | None = None) -> Conversation:
-        return self.language.conversation(before)
+    def judged(self, program: str) -> Rendered:
+        """Returns what a program draws, which need not be taken apart."""
+        return as_written(self, program)
 
 
 _last: list[tuple[RenderedLanguage, str, Rendered]] = []
 """The last program that was valid in this process."""
 
 
-def as_written(language: RenderedLanguage, program: str, parted: bool = True) -> Rendered:
+def as_written(language: RenderedLanguage, program: str) -> Rendered:
     """Returns what a program draws as it is written. It is judged, drawn and edited in turn, and is run once
     for all of them.
     """
     for known, text, rendered in _last:
-        if (known, text) == (language, program) and rendered.is_parted >= parted:
+        if (known, text) == (language, program):
             return rendered
-    (rendered,) = language.run(program, parted=parted)
+    (rendered,) = language.run(program)
     if rendered.ok:
         _last[:] = [(language, program, rendered)]
     return rendered
@@ -132,7 +102,7 @@ class RenderedConversation:
     told: set[str] = field(default_factory=set)
 
     def judge(self, program: str) -> Verdict:
-        rendered = as_written(self.language, program, parted=False)
+        rendered = self.language.judged(program)
         said = "\n".join((*rendered.errors, *rendered.warnings)[:_SHOWN])
         if rendered.ok and said in self.told:
             said = ""

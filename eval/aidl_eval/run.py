@@ -12,25 +12,24 @@ from datetime import UTC, datetime
 
 from aidl_eval import measures, store
 from aidl_eval.plan import Job, Plan
-from aidl_eval.recordings import Replay
 from aidl_eval.store import Record, Store
 from aidl_eval.worker import Broken, Remote, Worker
 from aidl_lang import Diagnostic
 from aidl_lang.tools.llm.generation import Task, generate
 from aidl_lang.tools.llm.messages import Message, Provider, Reply, Sampling
 
+Ask = Callable[[Job], Provider]
 PATIENCE = 5
 """Consecutive failures to reach the model after which no more requests are made."""
 
 
 @dataclass(frozen=True)
 class Done:
-    """A finished job with its pictures; `failure` tells why the conversation broke off, if it did."""
+    """A finished job with its picture; `failure` tells why the conversation broke off, if it did."""
 
     job: Job
     record: Record
     png: bytes | None = None
-    neutral: bytes | None = None
     failure: Diagnostic | None = None
 
 
@@ -39,18 +38,13 @@ class Timed:
     """A provider whose replies carry their seconds and their day (UTC). Repeats and pauses count."""
 
     provider: Provider
+    name: str
+    takes_seeds: bool
+    takes_grammars: bool
 
-    @property
-    def name(self) -> str:
-        return self.provider.name
-
-    @property
-    def takes_seeds(self) -> bool:
-        return self.provider.takes_seeds
-
-    @property
-    def takes_grammars(self) -> bool:
-        return self.provider.takes_grammars
+    @classmethod
+    def of(cls, provider: Provider) -> Timed:
+        return cls(provider, provider.name, provider.takes_seeds, provider.takes_grammars)
 
     def reply(self, messages: Sequence[Message], sampling: Sampling, hear: Callable[[str], None]) -> Reply:
         begun = time.monotonic()
@@ -61,19 +55,19 @@ class Timed:
 
 def run(
     plan: Plan,
-    provider: Provider | Replay | None,
+    ask: Ask | None,
     kept: Store,
     threads: int,
     seconds: float,
     listen: Callable[[Done, int, int], None],
 ) -> tuple[int, Diagnostic | None]:
-    """Does the open jobs of a plan; without a provider only outdated measures are taken again. `listen` is
-    told of each, with its number of how many. Returns how many were not begun, or failed to reach the model,
-    and why the last of these did.
+    """Does the open jobs of a plan, each with the provider that `ask` gives; without it only outdated
+    measures are taken again. `listen` is told of each, with its number of how many. Returns how many were not
+    begun, or failed to reach the model, and why the last of these did.
 
     An interrupt leaves everything that was finished.
     """
-    todo = list(_to_do(plan, kept, may_ask=provider is not None))
+    todo = list(_to_do(plan, kept, may_ask=ask is not None))
     waiting = queue.SimpleQueue[tuple[Job, Record | None]]()
     results = queue.SimpleQueue[Done | BaseException]()
     is_over = threading.Event()
@@ -84,7 +78,7 @@ def run(
         """Takes jobs until there are none left, or the worker is stopped."""
         try:
             while not is_over.is_set():
-                results.put(_worked(plan, provider, worker, *waiting.get_nowait()))
+                results.put(_worked(plan, ask, worker, *waiting.get_nowait()))
         except (queue.Empty, CancelledError):
             return
         except BaseException as bug:  # noqa: BLE001 (raised again by the main thread)
@@ -99,7 +93,7 @@ def run(
             done = results.get()
             if isinstance(done, BaseException):
                 raise done
-            kept.keep(done.job, done.record, done.png, done.neutral)
+            kept.keep(done.job, done.record, done.png)
             if done.failure is None:
                 left, in_a_row = left - 1, 0
             else:
@@ -116,7 +110,7 @@ def run(
 
 def _to_do(plan: Plan, kept: Store, may_ask: bool) -> Iterator[tuple[Job, Record | None]]:
     """Yields jobs without a complete record, with the conversation if only measures are missing."""
-    for job in plan.jobs():
+    for job in plan.jobs:
         record = kept.record(job)
         if record is None or "failure" in record:
             if may_ask:
@@ -125,24 +119,21 @@ def _to_do(plan: Plan, kept: Store, may_ask: bool) -> Iterator[tuple[Job, Record
             yield job, record
 
 
-def _worked(
-    plan: Plan, provider: Provider | Replay | None, worker: Worker, job: Job, record: Record | None
-) -> Done:
+def _worked(plan: Plan, ask: Ask | None, worker: Worker, job: Job, record: Record | None) -> Done:
     prompt = plan.prompt(job)
     if record is None:
-        assert provider is not None
-        language = Remote(plan.language(job.variant), worker)
-        asked = provider.of(job) if isinstance(provider, Replay) else provider
-        generation = generate(Task(prompt.text), asked, language, plan.sampled(job))
+        assert ask is not None
+        language = Remote.of(plan.language(job.variant), worker)
+        generation = generate(Task(prompt.text), ask(job), language, plan.sampled(job))
         if generation.failure is not None:
             return Done(job, store.failed(job, generation.failure), failure=generation.failure)
         record = store.recorded(job, prompt, generation)
     if not record["ok"]:
         return Done(job, record)
     measured = {**record, "measured": store.measured_with(prompt), "unmeasured": {}}
-    png = neutral = None
+    png = None
     try:
-        png, neutral, found = worker.call(measures.draw, job.variant, record["program"], prompt)
+        png, found = worker.call(measures.draw, job.variant, record["program"], prompt)
         measured |= found
     except Broken as reason:
         measured["unmeasured"]["drawing"] = str(reason)
@@ -151,4 +142,4 @@ def _worked(
         measured["edits"] = asdict(edits)
     except Broken as reason:
         measured["unmeasured"]["editability"] = str(reason)
-    return Done(job, measured, png, neutral)
+    return Done(job, measured, png)

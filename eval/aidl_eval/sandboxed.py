@@ -9,18 +9,16 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
 from functools import cache
 from itertools import pairwise
 from pathlib import Path
-from typing import Any, TypeAlias
 
 import numpy as np
 
-from aidl_eval import rendering, shapes
-from aidl_eval.regions import Part, Regions
+from aidl_eval import rendering, shapes, strict
+from aidl_eval.regions import Regions
 from aidl_eval.rendering import NOTHING, UNBOUNDED, Rendered
-from aidl_lang.common.colors import css_color
-from aidl_lang.common.processes import Guarded, Limit, LimitError, limit_met
 from aidl_lang.common.render.excerpt import escape
 from aidl_lang.geometry.curves import Line, Piece
 from aidl_lang.geometry.region import Polygon, polygon_area
@@ -39,8 +37,6 @@ def interpreter(library: str) -> str:
 def missing(library: str, python: str) -> str | None:
     """Returns the reason why an interpreter cannot run programs of a library safely; None if it can."""
     variable = f"AIDL_{library.upper()}_PYTHON"
-    if sys.platform == "win32":
-        return "programs in Python cannot be locked in on Windows"
     probe = (
         f"import sys; sys.path.insert(0, {str(_HOST.parent)!r}); import lock; import {library}; "
         "print(lock.has_filter())"
@@ -107,95 +103,50 @@ def run(library: str, programs: Sequence[str], seconds: float | None = None) -> 
     return [_rendered(each, seconds) for each in found]
 
 
-def _rendered(said: object, seconds: float) -> Rendered:
+_Outline = list[tuple[float, float]]
+
+
+@dataclass(frozen=True)
+class _Said:
+    """What a host says of a program: how it ended, or its errors, or parts, each faces by their outlines."""
+
+    kind: str | None = None
+    errors: list[str] = field(default_factory=list)
+    parts: list[list[list[_Outline]]] = field(default_factory=list)
+    lines: list[_Outline] = field(default_factory=list)
+
+
+def _rendered(data: object, seconds: float) -> Rendered:
     """Returns what came of a program; it is strangers' data, and may be anything."""
     why = {
         "time": f"error: the program took longer than {seconds:g} s",
         "memory": f"error: the program took more than {rendering.MEMORY >> 30} GB of memory",
         "death": "error: the program ended its process: it took too much memory, or crashed the library",
     }
-    if not isinstance(said, dict):
-        return Rendered(errors=(_NOT_DRAWN,))
-    if isinstance(kind := said.get("kind"), str) and kind in why:
-        return Rendered(errors=(why[kind],))
-    if isinstance(errors := said.get("errors"), list) and errors:
-        return Rendered(errors=tuple(escape(str(error)[:1000]) for error in errors[:20]))
     try:
-        drawn = _drawing().submit(seconds, _regions, *_checked(said)).result()
-    except _UnboundedError:
+        said = strict.read(data, _Said)
+    except strict.WrongError:
+        return Rendered(errors=("error: the program handed over what is no drawing",))
+    if said.kind in why:
+        return Rendered(errors=(why[said.kind],))
+    if said.errors:
+        return Rendered(errors=tuple(escape(error[:1000]) for error in said.errors[:20]))
+    outlines = [*said.lines, *(outline for part in said.parts for face in part for outline in face)]
+    if not all(abs(c) < rendering.LARGEST for outline in outlines for point in outline for c in point):
         return Rendered(errors=(UNBOUNDED,))
-    except (KeyError, TypeError, ValueError):
-        return Rendered(errors=(_NOT_DRAWN,))
-    except (LimitError, MemoryError) as error:
-        return Rendered(errors=(_MET[limit_met(error) or Limit.DEATH].format(seconds),))
+    parts = [shapes.region([o for face in part for o in _directed(face)], "NonZero") for part in said.parts]
+    drawn = Regions(tuple(filter(None, parts)), tuple(_line(line) for line in said.lines if len(line) > 1))
     return Rendered(drawn) if drawn else Rendered(errors=(f"{NOTHING}: hand it to `show_object(…)`",))
 
 
-_NOT_DRAWN = "error: the program handed over what is no drawing"
-_MET = {
-    Limit.TIME: "error: working out what is drawn took longer than {:g} s: its outlines cross too often",
-    Limit.MEMORY: "error: working out what is drawn took too much memory",
-    Limit.DEATH: "error: working out what is drawn ended its process: it took too much memory",
-}
-
-
-@cache
-def _drawing() -> Guarded:
-    """Returns the process that works out what is drawn: one step of that has no end that could be set."""
-    return Guarded(1, __name__, rendering.MEMORY)
-
-
-class _UnboundedError(Exception):
-    """Raised for a coordinate that is too large."""
-
-
-_Face: TypeAlias = list[Polygon]
-
-
-def _checked(said: dict[str, Any]) -> tuple[list[tuple[str | None, list[_Face]]], list[Polygon]]:
-    """Returns the parts, each a colour and faces by their outlines, and the lines of what a program handed
-    over. Raises KeyError, TypeError and ValueError for all that is not exactly that.
-    """
-    parts = []
-    for part in _list(said["parts"]):
-        if not isinstance(part, dict) or not isinstance(color := part["color"], str | None):
-            raise TypeError
-        parts.append((color, [[_points(o) for o in _list(face)] for face in _list(part["faces"])]))
-    return parts, [_points(line) for line in _list(said["lines"])]
-
-
-def _list(said: object) -> list[Any]:
-    if not isinstance(said, list):
-        raise TypeError
-    return said
-
-
-def _points(outline: object) -> Polygon:
-    found = [_list(point) for point in _list(outline)]
-    if any(len(point) != 2 or type(c) not in (int, float) for point in found for c in point):
-        raise TypeError
-    if not all(abs(c) < rendering.LARGEST for point in found for c in point):
-        raise _UnboundedError
-    return np.array(found, float).reshape(-1, 2)
-
-
-def _regions(given: list[tuple[str | None, list[_Face]]], lines: list[Polygon]) -> Regions:
-    parts = list[Part]()
-    for color, faces in given:
-        outlines = [outline for face in faces for outline in _directed(face)]
-        if region := shapes.region(outlines, "NonZero"):
-            parts.append(Part(region, css_color((color,)) if color is not None else None))
-    return Regions(tuple(parts), tuple(_line(line) for line in lines if len(line) > 1))
-
-
-def _directed(face: _Face) -> Iterator[Polygon]:
+def _directed(face: list[_Outline]) -> Iterator[Polygon]:
     """Yields the outlines of a face, the outer one counter-clockwise and its holes clockwise."""
-    for number, outline in enumerate(face):
-        if len(outline) > 2:
+    for number, corners in enumerate(face):
+        if len(corners) > 2:
+            outline = np.array(corners, float)
             is_reversed = (polygon_area(outline) > 0) == bool(number)
             yield outline[::-1] if is_reversed else outline
 
 
-def _line(points: Polygon) -> tuple[Piece, ...]:
-    corners = [(float(x), float(y)) for x, y in points]
-    return tuple(Line(a, b) for a, b in pairwise(corners) if a != b)
+def _line(points: _Outline) -> tuple[Piece, ...]:
+    return tuple(Line(a, b) for a, b in pairwise(points) if a != b)

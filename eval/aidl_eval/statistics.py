@@ -6,8 +6,7 @@ Runs of one prompt are not independent of each other, so prompts are what is dra
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
-from functools import lru_cache
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,7 +14,6 @@ from numpy.typing import NDArray
 RESAMPLES = 10_000
 """Of each interval, and the most sign patterns of a test: up to 13 prompts all of them are tried."""
 SEED = 1
-_OUTER = (2.5, 97.5)
 
 Interval = tuple[float, float]
 Floats = NDArray[np.float64]
@@ -48,28 +46,23 @@ def interval(cases: Sequence[Case]) -> Interval | None:
     """Returns the 95 % percentile interval of a figure, by drawing prompts with replacement; where there is
     one prompt, by drawing its conversations. None for fewer than two.
     """
-    return _interval(tuple(cases))
+    from scipy.stats import bootstrap
 
-
-@lru_cache(maxsize=1 << 14)  # each format of the tables asks for it
-def _interval(cases: tuple[Case, ...]) -> Interval | None:
-    prompts = list(dict.fromkeys(case.prompt for case in cases))
-    if len(prompts) > 1:
-        place = {prompt: number for number, prompt in enumerate(prompts)}
-        group = np.array([place[case.prompt] for case in cases])
-    else:
-        group = np.arange(len(cases))
-    values = np.bincount(group, [case.value for case in cases]) if cases else np.zeros(0)
-    weights = np.bincount(group, [case.weight for case in cases]) if cases else np.zeros(0)
-    drawn = weights > 0
-    values, weights = values[drawn], weights[drawn]
-    if len(values) < 2:
+    if len({case.prompt for case in cases}) < 2:
+        cases = [replace(case, prompt=str(number)) for number, case in enumerate(cases)]
+    drawn = _sums(cases)
+    if len(drawn) < 2:
         return None
-    if np.ptp(values / weights) == 0:
-        return (float(values[0] / weights[0]),) * 2
-    chosen = np.random.default_rng(SEED).integers(0, len(values), (RESAMPLES, len(values)))
-    low, high = np.percentile(values[chosen].sum(1) / weights[chosen].sum(1), _OUTER)
-    return float(low), float(high)
+    found = bootstrap(
+        tuple(zip(*drawn.values(), strict=True)),
+        lambda values, weights, axis: values.sum(axis) / weights.sum(axis),
+        paired=True,
+        vectorized=True,
+        n_resamples=RESAMPLES,
+        method="percentile",
+        random_state=np.random.default_rng(SEED),  # `rng` in scipy 1.15 and later
+    )
+    return float(found.confidence_interval.low), float(found.confidence_interval.high)
 
 
 def wilson(part: int, count: int) -> Interval:
@@ -82,11 +75,16 @@ def wilson(part: int, count: int) -> Interval:
 
 def by_prompt(cases: Sequence[Case]) -> dict[str, float]:
     """Returns the figure of each prompt."""
-    sums = dict[str, tuple[float, float]]()
+    return {prompt: value / weight for prompt, (value, weight) in _sums(cases).items()}
+
+
+def _sums(cases: Sequence[Case]) -> dict[str, tuple[float, float]]:
+    """Returns value and weight of each prompt that has any."""
+    found = dict[str, tuple[float, float]]()
     for case in cases:
-        value, weight = sums.get(case.prompt, (0.0, 0.0))
-        sums[case.prompt] = value + case.value, weight + case.weight
-    return {prompt: value / weight for prompt, (value, weight) in sums.items() if weight > 0}
+        value, weight = found.get(case.prompt, (0.0, 0.0))
+        found[case.prompt] = value + case.value, weight + case.weight
+    return {prompt: of for prompt, of in found.items() if of[1] > 0}
 
 
 def compared(first: Mapping[str, float], second: Mapping[str, float]) -> Comparison | None:
@@ -112,13 +110,9 @@ def _p(differences: Sequence[float]) -> float:
         return 1.0
     from scipy.stats import permutation_test
 
-    def mean(first: Floats, second: Floats, axis: int) -> Floats:
-        found: Floats = np.mean(first - second, axis=axis)
-        return found
-
     found = permutation_test(
-        (np.asarray(differences, float), np.zeros(len(differences))),
-        mean,
+        (np.asarray(differences, float),),  # of one sample the signs are exchanged
+        np.mean,
         permutation_type="samples",
         vectorized=True,
         n_resamples=RESAMPLES,
@@ -150,14 +144,15 @@ def alpha(groups: Iterable[Iterable[Sequence[float]]]) -> float | None:
 
 
 def _disagreement(units: Sequence[Sequence[float]]) -> tuple[float, float]:
-    """Returns the disagreement within units and that expected by chance, times the number of values."""
+    """Returns the disagreement within units and that expected by chance, in squares of ranks: values differ
+    by how many given ones lie between them.
+    """
+    from scipy.stats import rankdata
+
     if not units:
         return 0.0, 0.0
-    values, places = np.unique(np.concatenate(units), return_inverse=True)
-    tables = np.zeros((len(units), len(values)))
-    np.add.at(tables, (np.repeat(np.arange(len(units)), list(map(len, units))), places), 1)
-    counts = tables.sum(0)
-    middles = np.cumsum(counts) - counts / 2  # ranks differ by how many given values lie between them
-    squares = (middles[:, None] - middles) ** 2
-    pairs = np.einsum("ui,uj,ij->u", tables, tables, squares)
-    return float((pairs / (tables.sum(1) - 1)).sum()), float(counts @ squares @ counts / (counts.sum() - 1))
+    ranks = rankdata(np.concatenate(units))
+    own = np.split(ranks, np.cumsum([len(unit) for unit in units])[:-1])
+    return float(sum(len(unit) * np.var(unit, ddof=1) for unit in own)), float(
+        len(ranks) * np.var(ranks, ddof=1)
+    )

@@ -5,21 +5,19 @@ Everything is written in one step, so that an interrupted run leaves whole recor
 
 from __future__ import annotations
 
-import hashlib
 import json
 from collections.abc import Mapping
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from aidl_eval.plan import VARIANTS, Job, Plan
-from aidl_eval.recordings import GUIDE, RecordedPlan
+from aidl_eval.plan import VARIANTS, Job, Plan, digest
 from aidl_eval.requirements import Prompt
 from aidl_lang import Diagnostic, __version__
+from aidl_lang.common.prose import shortened
 from aidl_lang.common.world import replace
 from aidl_lang.tools.cli.files import UseError
 from aidl_lang.tools.llm.generation import Attempt, Generation
-from aidl_lang.tools.llm.messages import Verdict
 
 Record = dict[str, Any]
 
@@ -43,7 +41,7 @@ class Store:
         """Writes the settings of a plan. Raises StoreError if the records come from others."""
         known, now = self._read(self.folder / SETTINGS) or {}, _settings(plan, provider)
         differing = [
-            f"{name}: `{_short(known[name])}` then, `{_short(now[name])}` now"
+            f"{name}: `{_told(known[name])}` then, `{_told(now[name])}` now"
             for name in sorted(known.keys() & now.keys())
             if known[name] != now[name]
         ]
@@ -80,11 +78,10 @@ class Store:
         found.sort(key=lambda item: item[:3])
         return [record for *_, record in found if record is not None]
 
-    def keep(self, job: Job, record: Record, png: bytes | None, neutral: bytes | None = None) -> None:
-        """Writes the pictures, then the record that refers to them."""
-        for path, drawn in ((picture_path(job.key), png), (neutral_path(job.key), neutral)):
-            if drawn is not None:
-                self.write(path, drawn)
+    def keep(self, job: Job, record: Record, png: bytes | None) -> None:
+        """Writes the picture, then the record that refers to it."""
+        if png is not None:
+            self.write(picture_path(job.key), png)
         self.write(_record_path(job), _json(record))
 
     # --- files ------------------------------------------------------------------------------------
@@ -114,11 +111,6 @@ def picture_path(key: str) -> str:
     return f"pictures/{key}.png"
 
 
-def neutral_path(key: str) -> str:
-    """Returns where the picture in the style that all languages share is kept."""
-    return f"pictures/{key}.neutral.png"
-
-
 def _record_path(job: Job) -> str:
     return f"records/{job.key}.json"
 
@@ -136,13 +128,12 @@ def _is_record(found: Record, job: Job) -> bool:
 # --- from values to data --------------------------------------------------------------------------
 
 
-def digest(text: str) -> str:
-    return hashlib.sha256(text.encode()).hexdigest()[:16]
-
-
 def measured_with(prompt: Prompt) -> str:
     """Returns a digest of what measures depend on beside the program: a new one makes them outdated."""
     return digest(f"{__version__}\n{prompt.source.text}")
+
+
+_OF_VERDICT = ("ok", "stage", "codes", "fixes", "missing", "numbers")
 
 
 def recorded(job: Job, prompt: Prompt, generation: Generation) -> Record:
@@ -168,22 +159,14 @@ def failed(job: Job, failure: Diagnostic) -> Record:
 
 
 def _attempt(attempt: Attempt) -> Record:
+    reply, verdict = asdict(attempt.reply), attempt.verdict
     return {
-        "reply": attempt.reply.text,
-        "model": attempt.reply.model,
-        "finish": str(attempt.reply.finish),
-        "usage": asdict(attempt.reply.usage),
-        "seconds": attempt.reply.seconds,
-        "date": attempt.reply.date,
+        "reply": reply.pop("text"),
+        **reply,
         "program": attempt.program,
-        "verdict": None if attempt.verdict is None else _verdict(attempt.verdict),
+        "verdict": None if verdict is None else {name: getattr(verdict, name) for name in _OF_VERDICT},
         "answer": attempt.answer,
     }
-
-
-def _verdict(verdict: Verdict) -> Record:
-    kept = ("ok", "stage", "codes", "fixes", "missing")
-    return {**{name: getattr(verdict, name) for name in kept}, "numbers": dict(verdict.numbers)}
 
 
 def _settings(plan: Plan, provider: str) -> Record:
@@ -196,19 +179,14 @@ def _settings(plan: Plan, provider: str) -> Record:
         "temperature": sampling.temperature,
         "max_tokens": sampling.max_tokens,
         "extra": dict(sampling.extra),
-        "help": asdict(plan.switches),
-        **(plan.facts if isinstance(plan, RecordedPlan) else _guides(plan)),
+        "help": plan.has_help,
+        **plan.facts,
         **{f"prompt {prompt.name}": prompt.text for prompt in plan.prompts},
     }
 
 
-def _guides(plan: Plan) -> Record:
-    return {f"{GUIDE}{name}": digest(plan.language(name).guide()) for name in plan.variants}
-
-
-def _short(value: object) -> str:
-    text = " ".join(str(value).split())
-    return text if len(text) <= _SHOWN else f"{text[: _SHOWN - 1]}…"
+def _told(value: object) -> str:
+    return shortened(" ".join(str(value).split()), _SHOWN)
 
 
 def _json(value: Mapping[str, Any]) -> bytes:

@@ -15,11 +15,9 @@ from xml.etree import ElementTree
 import numpy as np
 
 from aidl_eval import rendering, shapes
-from aidl_eval.regions import Part, Regions
+from aidl_eval.regions import Regions
 from aidl_eval.rendering import NOTHING, Rendered, RenderedLanguage
-from aidl_eval.shapes import Stroke
-from aidl_lang.common.colors import hexadecimal
-from aidl_lang.geometry.region import Polygon
+from aidl_lang.geometry.region import Polygon, Region
 
 _LONGEST = 2_000_000
 """Most characters of a program."""
@@ -55,9 +53,7 @@ class Svg(RenderedLanguage):
         """SVG has no names for numbers, so nothing can be turned."""
         return {}
 
-    def run(
-        self, program: str, edits: Sequence[Mapping[str, float]] = ({},), parted: bool = True
-    ) -> list[Rendered]:
+    def run(self, program: str, edits: Sequence[Mapping[str, float]] = ({},)) -> list[Rendered]:
         return [render(program) for _ in edits]
 
 
@@ -125,23 +121,23 @@ def _excess(root: ElementTree.Element) -> str | None:
     return f"outlines have more than {_NUMBERS} numbers" if numbers > _NUMBERS else None
 
 
-def _parts(program: str) -> Iterator[Part]:
+def _parts(program: str) -> Iterator[Region]:
     svg = import_module("svgelements")
     read = svg.SVG.parse(io.StringIO(program), reify=True, ppi=96)
     for element in read.elements(conditional=lambda e: isinstance(e, svg.Shape)):
         if not _is_shown(element):
             continue
         outlines = [_points(svg, part) for part in svg.Path(element).as_subpaths()]
-        filled = _color(element.fill)
-        if filled is not None:
+        if _is_ink(element.fill):
             rule = "EvenOdd" if element.values.get("fill-rule") == "evenodd" else "NonZero"
             region = shapes.region([o for o in outlines if len(o) > 2], rule)  # type: ignore[arg-type]
-            if region:
-                yield Part(region, filled)
-        elif (stroked := _color(element.stroke)) is not None and (stroke := _stroke(element)).width > 0:
-            region = shapes.stroked([o for o in outlines if len(o)], stroke)
-            if region:
-                yield Part(region, stroked)
+        elif _is_ink(element.stroke) and (width := float(element.stroke_width or 0.0)) > 0:
+            cap = element.values.get("stroke-linecap", "butt")
+            region = shapes.stroked([o for o in outlines if len(o)], width, cap)
+        else:
+            continue
+        if region:
+            yield region
 
 
 def _chords(svg: Any, segment: Any) -> int:
@@ -156,17 +152,8 @@ def _is_shown(element: Any) -> bool:
     return said.get("display") != "none" and said.get("visibility") not in ("hidden", "collapse")
 
 
-def _stroke(element: Any) -> Stroke:
-    said = element.values
-    limit = float(said.get("stroke-miterlimit") or 4.0)
-    cap, join = said.get("stroke-linecap", "butt"), said.get("stroke-linejoin", "miter")
-    return Stroke(float(element.stroke_width or 0.0), cap, join, limit)
-
-
-def _color(color: Any) -> str | None:
-    if color is None or color.value is None or color.alpha == 0:
-        return None
-    return hexadecimal([color.red, color.green, color.blue])
+def _is_ink(color: Any) -> bool:
+    return color is not None and color.value is not None and color.alpha != 0
 
 
 def _points(svg: Any, path: Any) -> Polygon:

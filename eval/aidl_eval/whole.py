@@ -4,40 +4,36 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from functools import partial
+from typing import NamedTuple
 
 import numpy as np
 
-from aidl_eval.regions import Regions
+from aidl_eval import shapes
+from aidl_eval.regions import FINE, Regions
 from aidl_lang.geometry.boolean import common, region_distance
-from aidl_lang.geometry.curves import Line, inward
 from aidl_lang.geometry.intersect import near_pairs
 from aidl_lang.geometry.network import Joined
-from aidl_lang.geometry.region import Face, Loop, Region, measure, polygon_area
+from aidl_lang.geometry.region import Face, Region, measure, polygon_area
 
-NEAR = 0.02
+_NEAR = 0.02
 """Distance, as a share of the drawing, up to which parts hold together."""
-
 _BELOW_TOP = 0.03
 """Distance from its top at which a drawing is cut to count battlements, as a share of its height."""
-
 _SLIVER = 0.004
 """Width, as a share of the drawing's size, up to which something is too small to be counted."""
-
 _ALIKE = 0.05
 """Relative difference up to which sizes are one."""
-
 _ROUND = 0.06
 """Difference from a disc's area up to which an outline is round: a twelve-sided one is."""
-
 _SAMPLES = 48
 """Points on a curve at which the distance from the centre is measured."""
 
 
-def pieces(whole: Region) -> float:
+def pieces(drawn: Regions) -> float:
     """Counts the groups of material further apart than a fiftieth of the drawing's size."""
-    faces = [Region((face,)) for face in whole.faces]
-    joined, reach = Joined(), NEAR * _size(whole)
+    faces = [Region((face,)) for face in drawn.whole.faces]
+    joined, reach = Joined(), _NEAR * drawn.size
     for i, j in near_pairs([face.box for face in faces], reach):
         if joined.root(i) != joined.root(j):
             closest = region_distance(faces[i], faces[j])
@@ -46,51 +42,37 @@ def pieces(whole: Region) -> float:
     return float(len(joined.groups(range(len(faces)))))
 
 
-def symmetry(whole: Region) -> float:
+def symmetry(drawn: Regions) -> float:
     """Returns the share of the area covered by its mirror image about the upright through the centroid."""
-    if not whole:
-        return math.nan
-    x = measure(whole).centroid[0]
-    return common(_seen(whole, x, mirrored=False), _seen(whole, x, mirrored=True)).area / whole.area
+    whole = drawn.whole
+    axis = measure(whole).centroid[0]
+    image = [(p * (-1.0, 1.0) + (2 * axis, 0.0))[::-1] for p in whole.polygons(FINE * drawn.size)]
+    return common(whole, shapes.region(image, "NonZero")).area / whole.area
 
 
-def _seen(region: Region, x: float, *, mirrored: bool) -> Region:
-    def turned(loop: Loop) -> Loop:
-        return Loop(tuple(inward(piece, (x, 0.0), 0.0, mirrored) for piece in loop.pieces), loop.reversed)
-
-    return Region(tuple(Face(turned(f.outer), tuple(map(turned, f.holes))) for f in region.faces))
-
-
-def openings(whole: Region) -> float:
+def openings(drawn: Regions) -> float:
     """Counts the holes that material surrounds. Gaps between outlines that were to touch do not count."""
-    if not whole:
-        return 0.0
-    least = (_SLIVER * _size(whole)) ** 2
-    return float(sum(abs(hole.area) > least for face in whole.faces for hole in face.holes))
+    holes = [hole for face in drawn.whole.faces for hole in face.holes]
+    return float(sum(abs(hole.area) > (_SLIVER * drawn.size) ** 2 for hole in holes))
 
 
-def teeth(whole: Region) -> float:
+def teeth(drawn: Regions) -> float:
     """Counts how often the outermost outline crosses the circle halfway between its least and greatest
     distance from its centre, out and back.
     """
-    if not whole:
-        return math.nan
-    outer = max(whole.faces, key=lambda face: Region((Face(face.outer),)).area).outer
-    center = measure(Region((Face(outer),))).centroid
-    steps = np.linspace(0.0, 1.0, _SAMPLES)
-    away = np.concatenate([np.hypot(*(p.points(steps) - center).T) for p in outer.pieces])
+    filled = [Region((Face(face.outer),)) for face in drawn.whole.faces]
+    outer = max(filled, key=lambda region: region.area)
+    center, steps = measure(outer).centroid, np.linspace(0.0, 1.0, _SAMPLES)
+    away = np.concatenate([np.hypot(*(p.points(steps) - center).T) for p in outer.faces[0].outer.pieces])
+    if np.ptp(away) <= _SLIVER * drawn.size:
+        return 0.0
     beyond = away > (away.min() + away.max()) / 2
     return float(np.count_nonzero(beyond & ~np.roll(beyond, 1)))
 
 
-def battlements(whole: Region) -> float:
+def battlements(drawn: Regions) -> float:
     """Counts the pieces of material at the top."""
-    if not whole:
-        return math.nan
-    left, bottom, right, top = whole.box
-    height = 1e-3 * (top - bottom)
-    low = top - _BELOW_TOP * (top - bottom) - height
-    return float(len(common(whole, _band((left, right), low, height)).faces))
+    return float(len(_across(drawn, 1 - _BELOW_TOP).faces))
 
 
 def rounds(drawn: Regions) -> float:
@@ -109,45 +91,36 @@ def fields(drawn: Regions) -> float:
     """
     faces = [face for region in drawn.visible for face in region.faces]
     least = (_SLIVER * drawn.size) ** 2
-    return float(sum(Region((face,)).area > least for face in faces)) + openings(drawn.whole)
-
-
-def contact(drawn: Regions) -> float:
-    """Returns the distance between the two largest parts, as a share of the drawing's size: 0 where they
-    touch, or where there is one part alone.
-    """
-    large = sorted((part.region for part in drawn.parts), key=lambda region: region.area, reverse=True)[:2]
-    if len(large) < 2:
-        return 0.0 if large else math.nan
-    closest = region_distance(*large)
-    return math.nan if closest is None else closest[0] / drawn.size
+    return float(sum(Region((face,)).area > least for face in faces)) + openings(drawn)
 
 
 def fullness(drawn: Regions) -> float:
     """Returns the share of its box that the silhouette covers."""
-    if not drawn.whole:
-        return math.nan
-    left, bottom, right, top = drawn.whole.box
-    return drawn.whole.area / ((right - left) * (top - bottom))
+    return drawn.whole.area / (_side(0, drawn) * _side(1, drawn))
 
 
-def width_at(drawn: Regions, share: float) -> float:
+def _side(axis: int, drawn: Regions) -> float:
+    return drawn.whole.box[axis + 2] - drawn.whole.box[axis]
+
+
+def _width_at(share: float, drawn: Regions) -> float:
     """Returns how wide the silhouette is at a share of its height, as a share of its whole width; from the
     first material on the left to the last on the right.
     """
-    if not drawn.whole:
-        return math.nan
+    met = _across(drawn, share)
+    return (met.box[2] - met.box[0]) / _side(0, drawn) if met else 0.0
+
+
+def _across(drawn: Regions, share: float) -> Region:
+    """Returns a thin band of the silhouette from a share of its height on."""
     left, bottom, right, top = drawn.whole.box
-    y = bottom + share * (top - bottom)
-    met = common(drawn.whole, _band((left, right), y, 1e-3 * (top - bottom)))
-    if not met:
-        return 0.0
-    low, _, high, _ = met.box
-    return (high - low) / (right - left)
+    low = bottom + share * (top - bottom)
+    high = low + 1e-3 * (top - bottom)
+    band = np.array([(left - 1, low), (right + 1, low), (right + 1, high), (left - 1, high)])
+    return common(drawn.whole, shapes.region([band]))
 
 
-@dataclass(frozen=True)
-class _Outline:
+class _Outline(NamedTuple):
     width: float
     height: float
     area: float
@@ -179,34 +152,30 @@ def _largest_group(sizes: Sequence[tuple[float, ...]]) -> float:
     return float(near.all(axis=2).sum(axis=1).max())
 
 
-MEASURES: Mapping[str, Callable[[Regions], float]] = {
-    "pieces": lambda drawn: pieces(drawn.whole),
-    "symmetry": lambda drawn: symmetry(drawn.whole),
-    "openings": lambda drawn: openings(drawn.whole),
-    "teeth": lambda drawn: teeth(drawn.whole),
-    "battlements": lambda drawn: battlements(drawn.whole),
+_Measure = Callable[[Regions], float]
+
+
+def _of_material(measure: _Measure) -> _Measure:
+    """Returns a measure that is NaN where there is nothing to measure."""
+    return lambda drawn: measure(drawn) if drawn.whole else math.nan
+
+
+MEASURES: Mapping[str, _Measure] = {
+    "width": _of_material(partial(_side, 0)),
+    "height": _of_material(partial(_side, 1)),
+    "pieces": pieces,
+    "symmetry": _of_material(symmetry),
+    "openings": openings,
+    "teeth": _of_material(teeth),
+    "battlements": _of_material(battlements),
     "rounds": rounds,
     "alike": alike,
     "fields": fields,
-    "contact": contact,
-    "fullness": fullness,
-    "width_at_bottom": lambda drawn: width_at(drawn, 0.05),
-    "width_at_quarter": lambda drawn: width_at(drawn, 0.25),
-    "width_at_middle": lambda drawn: width_at(drawn, 0.5),
-    "width_at_three_quarters": lambda drawn: width_at(drawn, 0.75),
-    "width_at_top": lambda drawn: width_at(drawn, 0.95),
+    "fullness": _of_material(fullness),
+    "width_at_bottom": _of_material(partial(_width_at, 0.05)),
+    "width_at_quarter": _of_material(partial(_width_at, 0.25)),
+    "width_at_middle": _of_material(partial(_width_at, 0.5)),
+    "width_at_three_quarters": _of_material(partial(_width_at, 0.75)),
+    "width_at_top": _of_material(partial(_width_at, 0.95)),
 }
 """Each of all that is drawn as areas, in any language."""
-
-
-def _band(across: tuple[float, float], low: float, height: float) -> Region:
-    (left, right), high = across, low + height
-    corners = [(left - 1, low), (right + 1, low), (right + 1, high), (left - 1, high)]
-    return Region(
-        (Face(Loop(tuple(Line(a, b) for a, b in zip(corners, corners[1:] + corners[:1], strict=True)))),)
-    )
-
-
-def _size(whole: Region) -> float:
-    left, bottom, right, top = whole.box
-    return max(right - left, top - bottom)

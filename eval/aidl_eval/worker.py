@@ -6,18 +6,17 @@ from collections.abc import Callable
 from concurrent.futures import CancelledError
 from dataclasses import dataclass, field, replace
 from itertools import count
-from typing import Any, TypeAlias, TypeVar, cast
+from typing import TypeAlias, TypeVar
 
-from aidl_eval.rendering import Wrapped
-from aidl_lang.common.processes import Broke, Crew, Guarded, Limit
+from aidl_lang.common.processes import Guarded, Limit, limit_met
 from aidl_lang.tools.llm.messages import Conversation, Language, Verdict
 
 T = TypeVar("T")
 
 _MEMORY = 4 << 30
 """Address space of a worker, bytes."""
-_LAST = 1_000_000
-"""Weight of a program that could not be judged: the worst of all."""
+_BROKEN, _LAST = "broken", 1_000_000
+"""Stage and weight of a program that could not be judged: the worst of all."""
 
 
 class Broken(Exception):  # noqa: N818 (what came of a program, no error of ours)
@@ -25,28 +24,31 @@ class Broken(Exception):  # noqa: N818 (what came of a program, no error of ours
 
 
 class Worker:
-    """A process for tasks, restarted after one breaks it. To be used by one thread."""
+    """A process for tasks, restarted after one breaks it."""
 
     def __init__(self, seconds: float) -> None:
         self._seconds = seconds
         self._pool = Guarded(1, "aidl_eval.measures", _MEMORY)
-        self._crew: Crew[str, Any] = Crew(self._pool)
+        self._is_stopped = False
 
     def call(self, task: Callable[..., T], *arguments: object) -> T:
-        """Returns the result of a task; it and its arguments can be pickled. Raises Broken."""
-        self._crew.give("it", self._seconds, task, *arguments)
-        while not (came := self._crew.came()):
-            pass  # it was begun once more
-        ((_, found),) = came
-        if not isinstance(found, Broke):
-            return cast(T, found)
-        if isinstance(found.error, CancelledError):
-            raise found.error
-        if found.limit is not None:
-            raise Broken(_WHY[found.limit].format(self._seconds)) from found.error
-        raise Broken(f"it ended in {type(found.error).__name__}: {str(found.error)[:200]}") from found.error
+        """Returns the result of a task; it and its arguments can be pickled. Raises Broken; CancelledError if
+        the worker is stopped.
+        """
+        if self._is_stopped:
+            raise CancelledError
+        try:
+            return self._pool.submit(self._seconds, task, *arguments).result()
+        except Exception as error:
+            if self._is_stopped:
+                raise CancelledError from error
+            limit = limit_met(error)
+            if limit is not None:
+                raise Broken(_WHY[limit].format(self._seconds)) from error
+            raise Broken(f"it ended in {type(error).__name__}: {str(error)[:200]}") from error
 
     def stop(self) -> None:
+        self._is_stopped = True
         self._pool.close()
 
 
@@ -58,10 +60,21 @@ _WHY = {
 
 
 @dataclass(frozen=True)
-class Remote(Wrapped):
+class Remote:
     """A language whose programs are judged by a worker."""
 
+    language: Language
     worker: Worker
+    name: str
+    suffix: str
+    fences: tuple[str, ...]
+
+    @classmethod
+    def of(cls, language: Language, worker: Worker) -> Remote:
+        return cls(language, worker, language.name, language.suffix, language.fences)
+
+    def guide(self) -> str:
+        return self.language.guide()
 
     def reads(self, text: str) -> bool:
         try:
@@ -84,29 +97,25 @@ class RemoteConversation:
     language: Language
     before: str | None
     programs: list[str] = field(default_factory=list)
-    verdicts: list[Verdict] = field(default_factory=list)
     number: int = field(default_factory=lambda: next(_numbers))
 
     def judge(self, program: str) -> Verdict:
         try:
-            verdict = self._call(_judge, program)
+            verdict = self.worker.call(_judge, self._state, program)
         except Broken as reason:
             return _unjudged(program, str(reason))
         self.programs.append(program)
-        self.verdicts.append(verdict)
         return verdict
 
     def finish(self, verdict: Verdict) -> Verdict:
-        if verdict not in self.verdicts:  # it broke the worker
-            return verdict
         try:
-            return self._call(_finish, self.verdicts.index(verdict))
+            return verdict if verdict.stage == _BROKEN else self.worker.call(_finish, self._state, verdict)
         except Broken:
             return verdict
 
-    def _call(self, task: Callable[..., Verdict], argument: object) -> Verdict:
-        state = (self.number, self.language, self.before, tuple(self.programs))
-        return self.worker.call(task, state, argument)
+    @property
+    def _state(self) -> _State:
+        return self.number, self.language, self.before, tuple(self.programs)
 
 
 def _unjudged(program: str, reason: str) -> Verdict:
@@ -114,43 +123,36 @@ def _unjudged(program: str, reason: str) -> Verdict:
         f"The program could not be judged: {reason}. Say it in another way, smaller or simpler, without "
         "giving up what it is to show, and answer with the whole program in one block."
     )
-    return Verdict(False, "broken", feedback, program, codes=("broken",), weight=(_LAST,))
+    return Verdict(False, _BROKEN, feedback, program, codes=(_BROKEN,), weight=(_LAST,))
 
 
-@dataclass
-class _Open:
-    number: int
-    conversation: Conversation
-    verdicts: list[Verdict]
-
-
-_open: list[_Open] = []
-"""In a worker: the present conversation."""
-
+# --- in a worker -------------------------------------------------------------------------------------
 
 _State: TypeAlias = tuple[int, Language, str | None, tuple[str, ...]]
 """The number of a conversation, its language, the program that it is to change, and those judged so far."""
 
+_open: dict[tuple[int, int], Conversation] = {}
+"""The present conversation, by its number and that of the programs judged."""
 
-def _resumed(state: _State) -> _Open:
+
+def _resumed(state: _State) -> Conversation:
+    """Returns the conversation of a state, which is the present one no more."""
     number, language, before, programs = state
-    if not _open or _open[0].number != number or len(_open[0].verdicts) != len(programs):
+    conversation = _open.pop((number, len(programs)), None)
+    _open.clear()
+    if conversation is None:
         conversation = language.conversation(before)
-        _open[:] = [_Open(number, conversation, [conversation.judge(program) for program in programs])]
-    return _open[0]
+        for program in programs:
+            conversation.judge(program)
+    return conversation
 
 
 def _judge(state: _State, program: str) -> Verdict:
-    resumed = _resumed(state)
-    try:
-        verdict = resumed.conversation.judge(program)
-    except BaseException:
-        _open.clear()  # it may hold half of the program
-        raise
-    resumed.verdicts.append(verdict)
+    conversation = _resumed(state)
+    verdict = conversation.judge(program)
+    _open[state[0], len(state[-1]) + 1] = conversation
     return replace(verdict, compiled=None)
 
 
-def _finish(state: _State, index: int) -> Verdict:
-    resumed = _resumed(state)
-    return replace(resumed.conversation.finish(resumed.verdicts[index]), compiled=None)
+def _finish(state: _State, verdict: Verdict) -> Verdict:
+    return replace(_resumed(state).finish(verdict), compiled=None)

@@ -13,10 +13,11 @@ from typing import Any
 import pytest
 
 from aidl_eval import command, requirements
-from aidl_eval.editability import Edits
+from aidl_eval.measures import Edits
 from aidl_eval.plan import VARIANTS
 from aidl_lang.tools.llm.messages import Finish, Message, ProviderError, Reply, Sampling, Usage
 from eval.tests import asked
+from eval.tests.study import results
 from tests import interrupts as interrupts
 from tests.commands import Aidl, Result
 from tests.commands import aidl as aidl
@@ -77,8 +78,9 @@ class Evaluation:
         return found
 
     def figures(self, variant: str) -> Mapping[str, Mapping[str, Any]]:
-        found = json.loads((self.out / "evaluation.json").read_bytes())["variants"]
-        return {line["figure"]: line for line in found if line["variant"] == variant}
+        """What is known of the figures of a language, as numbers."""
+        own = [line for line in results.figures(self.out) if line["variant"] == variant]
+        return {line["figure"]: line for line in own if not line["against"]}
 
     def contents(self) -> dict[str, bytes]:
         """Every file that came out, by its path."""

@@ -1,8 +1,8 @@
 """A recording that is put together here: the same drawings in every language, to test the harness.
 
 In AIDL (`full`) a drawing is a good program for its prompt. In each other language it is the regions of that
-drawing, outline by outline, with its size and the radius of its largest round outline as named numbers at
-the head. Half of the conversations begin with a mistake.
+drawing, outline by outline, with its size as a named number at the head. Half of the conversations begin with
+a mistake.
 
 `python -m eval.tests.scripted FILE` writes it.
 """
@@ -16,12 +16,10 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
-import numpy as np
-
 from aidl_eval.plan import VARIANTS
 from aidl_eval.regions import FINE, Regions, of_drawing
 from aidl_lang.common.source import SourceFile
-from aidl_lang.geometry.curves import Arc, Circle, union_bounds
+from aidl_lang.geometry.curves import union_bounds
 from aidl_lang.geometry.region import Loop
 from aidl_lang.pipeline import compile
 from eval.tests.asked import NAMES, TEXTS
@@ -30,8 +28,6 @@ from tests.documents import ROOT
 NOTE = (
     "scripted: drawings of one origin in every language, with mistakes put in; it tests the harness, no model"
 )
-_SAME = 1e-3
-"""Relative difference up to which two radii are one number."""
 
 
 def good(name: str) -> str:
@@ -51,20 +47,8 @@ def regions(name: str) -> Regions:
 
 # --- a drawing, as it is written ---------------------------------------------------------------------
 
-Point = tuple[float, float]
-
-
-@dataclass(frozen=True)
-class Disc:
-    """`center` is a share of the drawing's size, `radius` in mm: the number at the head if it `is_named`."""
-
-    center: Point
-    radius: float
-    is_named: bool
-
-
-Outline = Disc | tuple[Point, ...]
-"""Corners are shares of the drawing's size."""
+Outline = tuple[tuple[float, float], ...]
+"""Corners as shares of the drawing's size."""
 
 
 @dataclass(frozen=True)
@@ -75,54 +59,27 @@ class Area:
 
 @dataclass(frozen=True)
 class Plain:
-    """Areas by part, back to front; `radius` is that of the largest discs and round holes, if any."""
+    """Areas by part, back to front."""
 
     size: float
-    radius: float | None
-    parts: tuple[tuple[str | None, tuple[Area, ...]], ...]
-
-    @property
-    def numbers(self) -> Mapping[str, float]:
-        return {"size": self.size} | ({} if self.radius is None else {"radius": self.radius})
+    parts: tuple[tuple[Area, ...], ...]
 
 
 @cache
 def plain(name: str) -> Plain:
     """Returns the drawing for a prompt, with its numbers as they are written."""
     drawn = regions(name)
-    left, bottom, *_ = union_bounds([part.region.box for part in drawn.parts])
-    size = round(drawn.size, 2) + 0.003  # no whole number, which edits would keep whole
-    radii = [d.radius for part in drawn.parts for loop in part.region.loops if (d := _disc(loop))]
-    radius = round(max(radii), 2) + 0.003 if radii else None
-
-    def share(x: float, y: float) -> Point:
-        return round((x - left) / drawn.size, 6), round((y - bottom) / drawn.size, 6)
+    left, bottom, *_ = union_bounds([part.box for part in drawn.parts])
 
     def outline(loop: Loop) -> Outline:
-        if disc := _disc(loop):
-            is_named = radius is not None and abs(disc.radius - max(radii)) <= _SAME * disc.radius
-            return Disc(
-                share(*disc.center), radius if is_named and radius else round(disc.radius, 4), is_named
-            )
-        return tuple(share(float(x), float(y)) for x, y in loop.polygon(FINE * drawn.size))
+        corners = (loop.polygon(FINE * drawn.size) - (left, bottom)) / drawn.size
+        return tuple((round(float(x), 6), round(float(y), 6)) for x, y in corners)
 
     parts = tuple(
-        (part.color, tuple(Area(outline(f.outer), tuple(map(outline, f.holes))) for f in part.region.faces))
+        tuple(Area(outline(f.outer), tuple(map(outline, f.holes))) for f in part.faces)
         for part in drawn.parts
     )
-    return Plain(size, radius, parts)
-
-
-def _disc(loop: Loop) -> Circle | None:
-    """Returns the circle that a loop is, in one piece or several."""
-    first = loop.pieces[0]
-    if not isinstance(first, Arc | Circle):
-        return None
-    around = [(p.center, p.radius) for p in loop.pieces if isinstance(p, Arc | Circle)]
-    is_one = len(around) == len(loop.pieces) and np.allclose(
-        [(*center, radius) for center, radius in around], (*first.center, first.radius), rtol=1e-9, atol=1e-9
-    )
-    return Circle(first.center, first.radius) if is_one else None
+    return Plain(round(drawn.size, 2) + 0.003, parts)  # no whole number, which edits would keep whole
 
 
 # --- the languages -----------------------------------------------------------------------------------
@@ -132,10 +89,11 @@ def aidl(name: str, variant: str) -> str:
     """Returns the drawing as solids beside each other, or, without hierarchy, as outlines in one solid."""
     drawing = plain(name)
     is_flat, has_cuts = variant == "no-hierarchy", variant != "paper"
-    lines = [f"    param {n} = {v:g} in {v / 2:g}..{2 * v:g}" for n, v in drawing.numbers.items()]
-    for number, (color, areas) in enumerate(drawing.parts):
+    size = drawing.size
+    lines = [f"    param size = {size:g} in {size / 2:g}..{2 * size:g}"]
+    for number, areas in enumerate(drawing.parts):
         if not is_flat:
-            lines.append(f"    {_color(color) if has_cuts else ''}solid part_{number} {{")
+            lines.append(f"    solid part_{number} {{")
         for k, area in enumerate(areas):
             if k and not has_cuts:  # a hole cuts all of its solid
                 lines.append(f"    }}\n    solid part_{number}_{k} {{")
@@ -158,39 +116,25 @@ def aidl(name: str, variant: str) -> str:
 
 
 def _aidl(outline: Outline) -> str:
-    if isinstance(outline, Disc):
-        x, y = outline.center
-        return f"circle(center: ({x} * size, {y} * size), radius: {_radius(outline)})"
     return f"polygon([{', '.join(f'({x} * size, {y} * size)' for x, y in outline)}])"
-
-
-def _color(color: str | None) -> str:
-    return f'@color("{color}") ' if color else ""
-
-
-def _radius(disc: Disc) -> str:
-    return "radius" if disc.is_named else f"{disc.radius:g}"
 
 
 def openscad(name: str) -> str:
     """Returns the drawing with a module for each part."""
     drawing = plain(name)
-    lines = [f"// {TEXTS[name]}", "$fn = 180;", *(f"{n} = {v:g};" for n, v in drawing.numbers.items())]
-    for number, (_, areas) in enumerate(drawing.parts):
+    lines = [f"// {TEXTS[name]}", f"size = {drawing.size:g};"]
+    for number, areas in enumerate(drawing.parts):
         lines.append(f"module part_{number}() {{")
         for area in areas:
             holes = " ".join(map(_openscad, area.holes))
             outer = _openscad(area.outer)
             lines.append(f"    difference() {{ {outer} {holes} }}" if holes else f"    {outer}")
         lines.append("}")
-    for number, (color, _) in enumerate(drawing.parts):
-        lines.append(f'color("{color}") part_{number}();' if color else f"part_{number}();")
+    lines += [f"part_{number}();" for number in range(len(drawing.parts))]
     return "\n".join((*lines, ""))
 
 
 def _openscad(outline: Outline) -> str:
-    if isinstance(outline, Disc):
-        return f"translate({list(outline.center)} * size) circle({_radius(outline)});"
     return f"polygon({[list(corner) for corner in outline]} * size);"
 
 
@@ -200,7 +144,6 @@ def build123d(name: str) -> str:
         "from build123d import *",
         "def polygon(*points):\n"
         "    return make_face(Polyline(*[(x * size, y * size) for x, y in points], close=True))\n",
-        "def disc(x, y, r):\n    return Pos(x * size, y * size) * Circle(r)\n",
         "def cut(outer, *holes):\n    for hole in holes:\n        outer -= hole\n    return outer\n",
     )
 
@@ -211,7 +154,6 @@ def cadquery(name: str) -> str:
         "import cadquery as cq",
         "def polygon(*points):\n"
         "    return cq.Sketch().polygon([(x * size, y * size) for x, y in [*points, points[0]]])\n",
-        "def disc(x, y, r):\n    return cq.Sketch().push([(x * size, y * size)]).circle(r).reset()\n",
         "def cut(outer, *holes):\n"
         "    for hole in holes:\n        outer = outer.face(hole, mode='s')\n    return outer\n",
     )
@@ -223,25 +165,22 @@ def _python(name: str, head: str, *functions: str) -> str:
         f"# {TEXTS[name]}",
         head,
         "",
-        *(f"{n} = {v:g}" for n, v in drawing.numbers.items()),
+        f"size = {drawing.size:g}",
         "",
         *functions,
     ]
-    for color, areas in drawing.parts:
+    for areas in drawing.parts:
         shown = ", ".join(
             f"cut({', '.join(map(_called, (area.outer, *area.holes)))})"
             if area.holes
             else _called(area.outer)
             for area in areas
         )
-        options = f", options={{'color': '{color}'}}" if color else ""
-        lines.append(f"show_object([{shown}]{options})")
+        lines.append(f"show_object([{shown}])")
     return "\n".join((*lines, ""))
 
 
 def _called(outline: Outline) -> str:
-    if isinstance(outline, Disc):
-        return f"disc{(*outline.center, 'R')}".replace("'R'", _radius(outline))
     return f"polygon({', '.join(map(str, outline))})"
 
 
@@ -250,16 +189,13 @@ def svg(name: str) -> str:
     drawing = plain(name)
     size = drawing.size
     lines = [f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 {-size:g} {size:g} {size:g}">']
-    for color, areas in drawing.parts:
+    for areas in drawing.parts:
         d = " ".join(_path(o, size) for area in areas for o in (area.outer, *area.holes))
-        lines.append(f'  <path fill="{color or "gray"}" fill-rule="evenodd" d="{d}"/>')
+        lines.append(f'  <path fill-rule="evenodd" d="{d}"/>')
     return "\n".join((*lines, "</svg>", ""))
 
 
 def _path(outline: Outline, size: float) -> str:
-    if isinstance(outline, Disc):
-        (x, y), r = outline.center, outline.radius
-        return f"M{x * size - r:.5f} {-y * size:.5f} a{r} {r} 0 1 0 {2 * r} 0 a{r} {r} 0 1 0 {-2 * r} 0Z"
     return "M" + " L".join(f"{x * size:.5f} {-y * size:.5f}" for x, y in outline) + "Z"
 
 

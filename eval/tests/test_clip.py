@@ -60,7 +60,7 @@ def test_pictures_are_scored_once(store: Store, monkeypatch: pytest.MonkeyPatch)
         asked.append((picture, text))
         return float(len(asked))
 
-    monkeypatch.setattr(clip, "load", lambda weights, model: score)
+    monkeypatch.setattr(clip, "load", lambda weights: score)
     assert clip.score_all(store, RECORDS).of == {"gear/full/1": 1.0, "gear/full/2": 2.0}
     assert asked == [(png("red"), "a 2D drawing of a gear"), (png("blue"), "a 2D drawing of a gear")]
     store.write("pictures/gear/full/2.png", png("green"))
@@ -68,14 +68,17 @@ def test_pictures_are_scored_once(store: Store, monkeypatch: pytest.MonkeyPatch)
     assert clip.score_all(store, RECORDS, "other.pt").of == {"gear/full/1": 4.0, "gear/full/2": 5.0}
 
 
-def test_a_model_is_loaded_and_its_cosine_taken(store: Store, tmp_path: Path) -> None:
+def test_a_model_is_loaded_and_its_cosine_taken(
+    store: Store, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     open_clip, torch = pytest.importorskip("open_clip"), pytest.importorskip("torch")
     (tmp_path / "tiny.json").write_text(json.dumps(TINY))
+    monkeypatch.setattr(clip, "MODEL", "tiny")
     open_clip.add_model_config(tmp_path / "tiny.json")
     torch.manual_seed(1)
     model, _, prepare = open_clip.create_model_and_transforms("tiny")
     torch.save(model.state_dict(), tmp_path / "tiny.pt")
-    found = clip.score_all(store, RECORDS, str(tmp_path / "tiny.pt"), "tiny").of["gear/full/1"]
+    found = clip.score_all(store, RECORDS, str(tmp_path / "tiny.pt")).of["gear/full/1"]
     with torch.no_grad():
         seen = model.eval().encode_image(prepare(Image.new("RGB", (40, 30), "red")).unsqueeze(0))[0].tolist()
         said = model.encode_text(open_clip.get_tokenizer("tiny")(["a 2D drawing of a gear"]))[0].tolist()
@@ -83,5 +86,5 @@ def test_a_model_is_loaded_and_its_cosine_taken(store: Store, tmp_path: Path) ->
     assert found == pytest.approx(100 * dot / (math.hypot(*seen) * math.hypot(*said)), abs=1e-3)
     (tmp_path / "wrong.pt").write_bytes(b"no weights")
     assert "tiny cannot be loaded from" in (
-        clip.score_all(store, RECORDS, str(tmp_path / "wrong.pt"), "tiny").reason or ""
+        clip.score_all(store, RECORDS, str(tmp_path / "wrong.pt")).reason or ""
     )

@@ -7,7 +7,8 @@ from argparse import ArgumentParser
 
 import pytest
 
-from aidl_eval.plan import VARIANTS, Plan, Switches
+from aidl_eval import plan
+from aidl_eval.plan import VARIANTS
 from aidl_eval.rendering import RenderedLanguage
 from aidl_lang.common.source import SourceFile
 from aidl_lang.pipeline import Settings, compile
@@ -64,14 +65,17 @@ def test_no_guide_draws_what_is_asked_for(name: str) -> None:
                 assert not words <= set(re.findall(r"[a-z]+", heads)), (name, prompt.text)
 
 
-def test_without_a_guide_only_the_language_is_named() -> None:
-    plan = Plan((), ("full", "svg"), 1, generation.Settings(), Switches(guide=False))
-    assert plan.language("full").guide() == (
-        "You write programs in AIDL that draw flat parts. "
-        "Answer with the whole program in one ```aidl block.\n"
-    )
-    assert plan.language("svg").guide().startswith("You write programs in SVG that draw flat parts.")
-    assert plan.language("full").conversation().judge("solid a { c = circle(radius: 3) }").ok
+def test_a_plan_has_all_help_or_none() -> None:
+    """Each is tried for itself in the tests of conversations."""
+    slip = "solid a { c = circle(radus: 3) }"
+    said = {
+        has_help: plan.asked((), ("full",), 1, generation.Settings(), has_help)
+        .language("full")
+        .conversation()
+        .judge(slip)
+        for has_help in (True, False)
+    }
+    assert (said[True].ok, said[False].ok, said[False].fixes, said[False].program) == (True, False, (), slip)
 
 
 def test_help_can_be_switched_off() -> None:

@@ -13,7 +13,6 @@ from PIL import Image
 from aidl_eval import openscad, pictures, rendering
 from aidl_eval.openscad import OpenScad, parts, render
 from aidl_eval.sandbox import fence
-from aidl_eval.shapes import PIXELS
 
 needs_openscad = pytest.mark.skipif(OpenScad().missing() is not None, reason="openscad is not installed")
 
@@ -42,9 +41,9 @@ def test_a_program_is_drawn_with_its_holes() -> None:
     assert [len(face.holes) for face in drawn.faces] == [1]
     wider = render(PLATE, {"width": 100.0}).regions.whole
     assert wider.box[2] == pytest.approx(100)
-    with Image.open(io.BytesIO(pictures.colored(render(PLATE).regions))) as picture:
+    with Image.open(io.BytesIO(pictures.png(render(PLATE).regions))) as picture:
         pixels = np.asarray(picture.convert("RGB"))
-    assert max(picture.size) == PIXELS
+    assert max(picture.size) == pictures.PIXELS
     assert tuple(pixels[2, 2]) == (255, 255, 255)
     middle, hole = (
         pixels[picture.height // 2, picture.width * 3 // 4],
@@ -204,16 +203,16 @@ difference() { square(4); square(1); }
 @needs_openscad
 def test_what_stands_side_by_side_is_a_part_of_its_own() -> None:
     (drawn,) = OpenScad().run(PARTED)
-    areas = [part.region.area for part in drawn.regions.parts]
+    areas = [part.area for part in drawn.regions.parts]
+    assert len(areas) == 4
     assert areas[0] == pytest.approx(100)
     assert areas[3] == pytest.approx(15)
-    assert [part.color for part in drawn.regions.parts] == ["#ff0000", None, None, None]
-    (whole,) = OpenScad().run(PARTED, parted=False)
+    whole = OpenScad().judged(PARTED)
     assert whole.regions.whole.area == pytest.approx(drawn.regions.whole.area, rel=1e-4)
 
 
 def test_a_tree_is_opened_down_to_its_shapes() -> None:
     shapes = "\t\tsquare(size = [1, 1]);\n\t\tcircle(r = 1);\n"
     tree = f"group() {{\n\tgroup();\n\tcolor([1, 0, 0, 1]) {{\n{shapes}\t}}\n}}\n"
-    assert parts(tree) == [("square(size = [1, 1]);", "#ff0000"), ("circle(r = 1);", "#ff0000")]
+    assert parts(tree) == ["square(size = [1, 1]);", "circle(r = 1);"]
     assert parts("") == []

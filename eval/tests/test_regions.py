@@ -1,4 +1,4 @@
-"""Regions of any language: measures against shapely on drawn examples, order, and the one neutral style."""
+"""Regions of any language: measures against shapely on drawn examples, order, and their pictures."""
 
 from __future__ import annotations
 
@@ -11,7 +11,8 @@ from PIL import Image
 from shapely import affinity
 
 from aidl_eval import pictures
-from aidl_eval.regions import Regions, of_drawing, of_outlines
+from aidl_eval.regions import Regions, of_drawing
+from aidl_eval.shapes import region
 from aidl_eval.whole import MEASURES
 from aidl_lang.common.source import SourceFile
 from aidl_lang.pipeline import compile
@@ -20,7 +21,7 @@ Shape = shapely.Polygon | shapely.MultiPolygon
 
 
 def regions(*shapes: Shape) -> Regions:
-    return of_outlines((list(outlines(shape)), None) for shape in shapes)
+    return Regions(tuple(region(outlines(shape)) for shape in shapes))
 
 
 def outlines(shape: Shape) -> list[np.ndarray]:
@@ -57,7 +58,7 @@ def test_measures_agree_with_shapely() -> None:
         y = bottom + share * (top - bottom)
         across = SILHOUETTE.intersection(shapely.box(left, y, right, y + 1e-3 * (top - bottom))).bounds
         assert measured(name, CART) == pytest.approx((across[2] - across[0]) / (right - left), rel=1e-3)
-    assert measured("contact", CART) == 0
+    assert (measured("width", CART), measured("height", CART)) == pytest.approx((right - left, top - bottom))
 
 
 def test_what_is_covered_is_not_seen() -> None:
@@ -91,11 +92,10 @@ def test_alike_are_outlines_of_one_size_and_area() -> None:
     slats = [shapely.box(x, 0, x + 5, 40) for x in range(0, 60, 10)]
     triangle = shapely.Polygon([(90, 0), (95, 0), (90, 40)])
     assert measured("alike", regions(*slats, triangle)) == 6
-    assert measured("contact", regions(slats[0], slats[2])) == pytest.approx(15 / 40)
 
 
 def test_nothing_has_no_measures() -> None:
-    for name in ("fullness", "contact", "symmetry", "width_at_top"):
+    for name in ("fullness", "width", "symmetry", "width_at_top"):
         assert np.isnan(measured(name, Regions()))
     assert [measured(name, Regions()) for name in ("rounds", "alike", "fields", "pieces")] == [0, 0, 0, 0]
 
@@ -117,20 +117,12 @@ def test_aidl_is_taken_apart_into_bodies_and_what_they_are_united_of() -> None:
     assert compiled.model is not None
     assert compiled.drawing is not None
     drawn = of_drawing(compiled.model, compiled.drawing)
-    assert [(part.color, part.region.area) for part in drawn.parts] == [
-        ("navy", pytest.approx(60 * 20)),
-        ("navy", pytest.approx(400)),
-        ("red", pytest.approx(np.pi * 64)),
-    ]
+    assert [part.area for part in drawn.parts] == pytest.approx([60 * 20, 400, np.pi * 64])
     assert len(drawn.lines) == 1
 
 
-def test_neutral_pictures_tell_no_colours_and_no_language() -> None:
-    red = of_outlines([(outlines(BODY), "red"), (outlines(WHEELS[0]), "blue")])
-    plain = of_outlines([(outlines(BODY), None), (outlines(WHEELS[0]), "#123456")])
-    assert pictures.neutral(red) == pictures.neutral(plain)
-    assert pictures.colored(red) != pictures.colored(plain)
-    with Image.open(io.BytesIO(pictures.neutral(red))) as picture:
+def test_pictures_are_of_one_style() -> None:
+    with Image.open(io.BytesIO(pictures.png(regions(BODY, WHEELS[0])))) as picture:
         pixels = np.asarray(picture.convert("RGB")).astype(int)
     assert max(picture.size) == 512
     fill = np.array([0xC9, 0xCE, 0xD6])

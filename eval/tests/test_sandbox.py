@@ -6,9 +6,7 @@ audit hook refuses is tried past it as well, so that the guards below it are tes
 
 from __future__ import annotations
 
-import json
 import os
-import random
 import re
 import socket
 import subprocess
@@ -291,7 +289,6 @@ def test_a_crash_is_told() -> None:
 
 NO_DRAWING = "error: the program handed over what is no drawing"
 UNBOUNDED = "error: a coordinate is not a finite number, or too large"
-SQUARE = "[[[0, 0], [1, 0], [1, 1]]]"
 
 
 def says(monkeypatch: pytest.MonkeyPatch, folder: Path, text: str) -> None:
@@ -304,18 +301,16 @@ def says(monkeypatch: pytest.MonkeyPatch, folder: Path, text: str) -> None:
 @pytest.mark.parametrize(
     ("said", "error"),
     [
-        ('{"parts": [{"color": 3, "faces": []}], "lines": []}', NO_DRAWING),
-        ('{"parts": [{"color": null, "faces": []}], "lines": 7}', NO_DRAWING),
-        ('{"parts": {"color": null}, "lines": []}', NO_DRAWING),
-        ('{"parts": [{"faces": []}], "lines": []}', NO_DRAWING),
-        ('{"parts": [{"color": null, "faces": [[[["1", "2"]]]]}], "lines": []}', NO_DRAWING),
-        ('{"parts": [{"color": null, "faces": [[[[true, 0]]]]}], "lines": []}', NO_DRAWING),
-        ('{"parts": [{"color": null, "faces": [[[[1, 2, 3, 4]]]]}], "lines": []}', NO_DRAWING),
-        ('{"parts": [{"color": null, "faces": [[[[1e999, 0]]]]}], "lines": []}', UNBOUNDED),
+        ('{"parts": [3], "lines": []}', NO_DRAWING),
+        ('{"parts": [[]], "lines": 7}', NO_DRAWING),
+        ('{"parts": {"faces": []}, "lines": []}', NO_DRAWING),
+        ('{"parts": [[[[["1", "2"]]]]], "lines": []}', NO_DRAWING),
+        ('{"parts": [[[[[true, 0]]]]], "lines": []}', NO_DRAWING),
+        ('{"parts": [[[[[1, 2, 3, 4]]]]], "lines": []}', NO_DRAWING),
+        ('{"parts": [[[[[1e999, 0]]]]], "lines": []}', UNBOUNDED),
         ('{"parts": [], "lines": [[[0, 1' + "0" * 400 + "]]]}", UNBOUNDED),
         ('{"parts": [], "lines": [[[0, NaN]]]}', UNBOUNDED),
         ('{"kind": ["time"]}', NO_DRAWING),
-        (f'{{"parts": [{{"color": "\\ud800", "faces": [{SQUARE}]}}], "lines": []}}', ""),
         (r'{"errors": ["\u001b[31mred \ud800 \u202e"]}', "␛[31mred <U+D800> <U+202E>"),
     ],
 )
@@ -334,33 +329,15 @@ def test_a_host_that_is_taken_over_is_told(
     assert refused("").startswith(("error: the program ended its process", NO_DRAWING))
 
 
-def test_outlines_that_cross_everywhere_are_given_up(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    """One step of the geometry takes minutes, and cannot be interrupted from within."""
-    chance = random.Random(1)
-    outline = [[chance.random(), chance.random()] for _ in range(4000)]
-    with monkeypatch.context() as patched:
-        says(patched, tmp_path, json.dumps([{"parts": [{"color": None, "faces": [[outline]]}], "lines": []}]))
-        (rendered,) = sandboxed.run(FAKE.name, [""], 3)
-    assert rendered.errors == (
-        "error: working out what is drawn took longer than 3 s: its outlines cross too often",
-    )
-    assert run(SHAPES + "show_object(Face(box(0, 0, 1, 1)))").ok
-
-
-def test_faces_are_read_with_their_holes_and_colours() -> None:
+def test_faces_are_read_with_their_holes() -> None:
     program = SHAPES + (
         "show_object(Face(box(0, 0, 30, 20), box(5, 5, 4, 4)), options={'color': 'Red'})\n"
         "show_object([Face(box(40, 0, 10, 10)), Face(box(50, 0, 10, 10))], color=(0, 0, 1))\n"
         "show_object(Face(box(70, 0, 2, 2)), 'name')\n"
     )
     drawn = run(program).regions
-    assert [(part.color, part.region.area) for part in drawn.parts] == [
-        ("red", pytest.approx(600 - 16)),
-        ("#0000ff", pytest.approx(100)),
-        ("#0000ff", pytest.approx(100)),
-        (None, pytest.approx(4)),
-    ]
-    assert [len(part.region.faces[0].holes) for part in drawn.parts] == [1, 0, 0, 0]
+    assert [part.area for part in drawn.parts] == pytest.approx([600 - 16, 100, 100, 4])
+    assert [len(part.faces[0].holes) for part in drawn.parts] == [1, 0, 0, 0]
 
 
 @pytest.mark.parametrize(
@@ -402,7 +379,7 @@ def test_knobs_are_turned_where_they_are_written() -> None:
         SHAPES + "länge, breite = 0, 0\nbreite_1 = 10\nb = -2\nshow_object(Face(box(0, 0, breite_1, -b)))"
     )
     found = FAKE.run(program, [{}, {"breite_1": 12.0}, {"breite_1": 7.5, "b": -4.0}])
-    assert [r.regions.parts[0].region.area for r in found] == [20, 24, 30]
+    assert [r.regions.parts[0].area for r in found] == [20, 24, 30]
 
 
 def test_without_a_library_it_says_so(monkeypatch: pytest.MonkeyPatch) -> None:

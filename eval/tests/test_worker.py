@@ -33,7 +33,7 @@ def test_a_broken_task_says_why_and_the_next_one_runs(worker: Worker, program: s
 
 
 def test_a_conversation_survives_what_breaks_its_process(worker: Worker) -> None:
-    conversation = Remote(Fake(), worker).conversation("before")
+    conversation = Remote.of(Fake(), worker).conversation("before")
     assert conversation.judge("one").missing == ("before", "one")
     broken = conversation.judge("die")
     assert (broken.ok, broken.stage, broken.codes) == (False, "broken", ("broken",))
@@ -46,7 +46,7 @@ def test_a_conversation_survives_what_breaks_its_process(worker: Worker) -> None
 
 
 def test_conversations_do_not_hear_each_other(worker: Worker) -> None:
-    remote = Remote(Fake(), worker)
+    remote = Remote.of(Fake(), worker)
     first, second = remote.conversation(), remote.conversation()
     first.judge("one")
     second.judge("other")

@@ -1,4 +1,4 @@
-"""Reads what a program of build123d or CadQuery shows: flat outlines with their colours, back to front."""
+"""Reads what a program of build123d or CadQuery shows: flat outlines, back to front."""
 
 from __future__ import annotations
 
@@ -31,56 +31,51 @@ def warm_up(library: str) -> None:
                 kind.SetRunParallel = lambda self, on: None  # a locked process has no threads
     if library == "build123d":
         face = package.Face.make_rect(2.0, 1.0) - package.Pos(0, 0) * package.Circle(0.2)
-        collected([(package.fillet(package.Rectangle(4, 2).vertices(), 0.2), "red"), (face, None)])
+        collected([package.fillet(package.Rectangle(4, 2).vertices(), 0.2), face])
     elif library == "cadquery":
-        collected([(package.Sketch().rect(3, 2).vertices().fillet(0.2), "red")])
-        collected([(package.Workplane("XY").rect(3, 2).circle(0.2).wire(), None)])
+        collected([package.Sketch().rect(3, 2).vertices().fillet(0.2)])
+        collected([package.Workplane("XY").rect(3, 2).circle(0.2).wire()])
 
 
-def collected(shown: list[tuple[Any, Any]]) -> dict[str, Any]:
-    """Returns parts, one for each shape that is shown: a colour, and faces by their closed outlines, the
-    outer one first. What has no face makes lines. Raises NotFlat.
+def collected(shown: list[Any]) -> dict[str, Any]:
+    """Returns parts, one for each shape that is shown: faces by their closed outlines, the outer one first.
+    What has no face makes lines. Raises NotFlat.
     """
-    parts: list[dict[str, Any]] = []
+    parts: list[list[list[list[Point]]]] = []
     lines: list[list[Point]] = []
     count = 0
-    for thing, color in shown:
-        for shape, own in _shapes(thing):
-            named = _color(color if color is not None else own)
-            faces = list(_all(shape, "Faces", "faces"))
-            if list(_all(shape, "Solids", "solids")):
-                raise NotFlat("the drawing must be flat, and this shows a solid: show faces or sketches")
-            if faces:
-                parts.append(
-                    {"color": named, "faces": [[_loop(wire) for wire in _wires(face)] for face in faces]}
-                )
-            else:
-                lines += [_flat(_points(edge)) for edge in _all(shape, "Edges", "edges")]
-            count += len(faces) or 1
-            if count > _MOST:
-                raise NotFlat(f"more than {_MOST} faces and lines are shown")
+    for shape in (shape for thing in shown for shape in _shapes(thing)):
+        faces = list(_all(shape, "Faces", "faces"))
+        if list(_all(shape, "Solids", "solids")):
+            raise NotFlat("the drawing must be flat, and this shows a solid: show faces or sketches")
+        if faces:
+            parts.append([[_loop(wire) for wire in _wires(face)] for face in faces])
+        else:
+            lines += [_flat(_points(edge)) for edge in _all(shape, "Edges", "edges")]
+        count += len(faces) or 1
+        if count > _MOST:
+            raise NotFlat(f"more than {_MOST} faces and lines are shown")
     return {"errors": [], "parts": parts, "lines": lines}
 
 
-def _shapes(thing: Any, color: Any = None) -> Iterator[tuple[Any, Any]]:
-    """Yields the shapes in whatever is shown, with the colours that they have themselves."""
+def _shapes(thing: Any) -> Iterator[Any]:
+    """Yields the shapes in whatever is shown."""
     kind = type(thing).__name__
     if isinstance(thing, (list, tuple, set)) and not hasattr(thing, "wrapped"):
         for one in thing:
-            yield from _shapes(one, color)
+            yield from _shapes(one)
     elif kind in ("BuildSketch", "BuildPart", "BuildLine"):
-        name = {"BuildSketch": "sketch", "BuildPart": "part", "BuildLine": "line"}[kind]
-        yield from _shapes(getattr(thing, name), color)
+        yield from _shapes(getattr(thing, kind.removeprefix("Build").lower()))
     elif kind == "Workplane":
         for one in thing.vals():
-            yield from _shapes(one, color)
+            yield from _shapes(one)
     elif kind == "Sketch" and hasattr(thing, "_faces"):
-        yield thing._faces, color
+        yield thing._faces
     elif kind == "Assembly" and hasattr(thing, "traverse"):
-        for shape, _, location, own in thing:
-            yield shape.located(location) if location is not None else shape, own or color
+        for shape, _, location, _ in thing:
+            yield shape.located(location) if location is not None else shape
     elif hasattr(thing, "wrapped") and (hasattr(thing, "edges") or hasattr(thing, "Edges")):
-        yield thing, getattr(thing, "color", None) or color
+        yield thing
     elif kind not in ("Vector", "Location", "Plane", "NoneType"):
         raise NotFlat(f"`{kind}` cannot be shown: show faces, sketches or lists of them")
 
@@ -131,17 +126,3 @@ def _loop(wire: Any) -> list[Point]:
         points = left.pop(best)
         found += (points if math.dist(end, points[0]) <= math.dist(end, points[-1]) else points[::-1])[1:]
     return found
-
-
-def _color(color: Any) -> str | None:
-    if color is None or isinstance(color, str):
-        return color.lower() if color else None
-    if hasattr(color, "toTuple"):
-        color = color.toTuple()
-    try:
-        red, green, blue = (float(part) for part in list(color)[:3])
-    except (TypeError, ValueError):
-        return None
-    if max(red, green, blue) > 1:
-        red, green, blue = red / 255, green / 255, blue / 255
-    return "#" + "".join(f"{round(255 * min(1.0, max(0.0, part))):02x}" for part in (red, green, blue))

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import contextlib
 import importlib
+import io
 import json
 import math
 import os
@@ -93,7 +94,7 @@ def _wait(child: int, seconds: float) -> int | None:
 def _child(request: dict[str, Any], program: str, allowed: frozenset[str], result: int) -> None:
     os.dup2(result, 1)
     os.closerange(2, 4096)
-    sys.stdin = sys.stdout = sys.stderr = _Nowhere()
+    sys.stdin = sys.stdout = sys.stderr = io.StringIO()
     lock.lock(request["memory"], math.ceil(request["seconds"]), request["output"])
     try:
         said = _executed(request["library"], program, allowed)
@@ -105,26 +106,6 @@ def _child(request: dict[str, Any], program: str, allowed: frozenset[str], resul
     while data:
         data = data[os.write(1, data) :]
     os._exit(0)
-
-
-class _Nowhere:
-    """A file that takes everything and has nothing."""
-
-    encoding, errors, closed = "utf-8", "replace", False
-
-    def write(self, text: str) -> int:
-        return len(text)
-
-    def read(self, size: int = -1) -> str:
-        return ""
-
-    readline = read
-
-    def flush(self) -> None:
-        return None
-
-    def isatty(self) -> bool:
-        return False
 
 
 class _Imports:
@@ -140,11 +121,10 @@ class _Imports:
 
 
 def _executed(library: str, program: str, allowed: frozenset[str]) -> dict[str, Any]:
-    shown: list[tuple[Any, Any]] = []
+    shown: list[Any] = []
 
-    def show_object(shape: Any, name: Any = None, options: Any = None, color: Any = None, **more: Any) -> Any:
-        more = {**(options if isinstance(options, dict) else {}), **more}
-        shown.append((shape, color if color is not None else more.get("color")))
+    def show_object(shape: Any, *about: Any, **more: Any) -> Any:
+        shown.append(shape)
         return shape
 
     names: dict[str, Any] = {"__name__": "__main__", "show_object": show_object, "show": show_object}
@@ -152,7 +132,7 @@ def _executed(library: str, program: str, allowed: frozenset[str]) -> dict[str, 
     try:
         exec(compile(program, _FILE, "exec"), names)
         if not shown and (result := names.get("result")) is not None:
-            shown.append((result, None))
+            shown.append(result)
         found: dict[str, Any] = drawn.collected(shown)
         return found
     except MemoryError:

@@ -9,7 +9,7 @@ Several layers, because none is everywhere:
     audit hook          everywhere: what Python itself would open, start or load is refused with a word
 
 Where there is no list of system calls (macOS, other processors), names in folders could still be changed by
-a program that gets around the audit hook: `strength` says so, and the caller asks before it runs anything.
+a program that gets around the audit hook: `has_filter` says so, and the caller asks before it runs anything.
 """
 
 from __future__ import annotations

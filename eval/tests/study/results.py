@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import csv
+import io
 import json
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -12,7 +14,7 @@ from PIL.PngImagePlugin import PngInfo
 
 from aidl_eval.judgements import Answers
 from aidl_eval.plan import VARIANTS
-from aidl_eval.store import Store, neutral_path, picture_path
+from aidl_eval.store import Store, picture_path
 
 LANGUAGES = ("full", "openscad", "svg")
 PROMPTS = ("lamp stand", "old key", "tall mug", "wide fork")
@@ -68,7 +70,7 @@ def write(
                 state = (states or {}).get((prompt, language, run), "drawn")
                 found = record(prompt, language, run, state)
                 key = f"{found['prompt']}/{language}/{run}"
-                for path in (f"records/{key}.json", picture_path(key), neutral_path(key)):
+                for path in (f"records/{key}.json", picture_path(key)):
                     (folder / path).parent.mkdir(parents=True, exist_ok=True)
                 (folder / f"records/{key}.json").write_text(json.dumps(found), "utf-8")
                 if state != "drawn":
@@ -76,9 +78,19 @@ def write(
                 told = PngInfo()
                 told.add_text("Software", language)
                 image = Image.new("RGBA", (width_of(language), 64), (90, 90, 90, 128))
-                for path in (picture_path(key), neutral_path(key)):
-                    image.save(folder / path, pnginfo=told)
+                image.save(folder / picture_path(key), pnginfo=told)
     return Store(folder)
+
+
+def figures(folder: Path) -> list[dict[str, Any]]:
+    """The lines of `evaluation.csv`, what is a number as one; without what is empty."""
+    lines = csv.DictReader(io.StringIO((folder / "evaluation.csv").read_text("utf-8-sig")))
+    words = ("prompt", "variant", "against", "figure", "reason")
+    return [
+        {n: t if n in words else float(t) for n, t in line.items() if t or n in words}
+        for line in lines
+        if not line["prompt"]
+    ]
 
 
 def lines(folder: Path) -> list[dict[str, Any]]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import re
 import signal
 import subprocess
@@ -152,20 +151,19 @@ def test_three_raters_and_the_report(
 
     assert main(["eval", "--report", "--out", str(tmp_path)]) == 0
     out = capsys.readouterr().out
-    found = json.loads((tmp_path / "evaluation.json").read_text("utf-8"))
-    whole = {line["figure"]: line["value"] for line in found["study"]}
+    found = results.figures(tmp_path)
+    whole = {line["figure"]: line["value"] for line in found if not line["variant"]}
     assert (whole["raters"], whole["judgements"], whole["skipped"]) == (3, 11, 1)
     assert whole["alpha"] == pytest.approx(0.191097508591065)  # pair by pair, by the definition
+    lines = [line for line in found if line["figure"] == "rank"]
     for name, ranks in RANKS.items():
-        own = {line["figure"]: line for line in found["variants"] if line["variant"] == name}
-        assert own["rank"]["value"] == pytest.approx(sum(ranks) / 11)
-        assert own["rank"]["count"] == 11
-        assert own["rank"]["low"] <= own["rank"]["value"] <= own["rank"]["high"]
-        assert own["preferred"]["value"] == pytest.approx((3 - sum(ranks) / 11) / 2)
-        assert f"{own['rank']['value']:.2f} ± " in out
-    for figure in ("rank", "preferred"):
-        lines = [line for line in found["pairs"] if line["figure"] == figure]
-        assert [(line["variant"], line["against"]) for line in lines] == list(combinations(LANGUAGES, 2))
+        (own,) = (line for line in lines if line["variant"] == name and not line["against"])
+        assert own["value"] == pytest.approx(sum(ranks) / 11)
+        assert own["count"] == 11
+        assert own["low"] <= own["value"] <= own["high"]
+        assert f"{own['value']:.2f} ± " in out
+    pairs = [(line["variant"], line["against"]) for line in lines if line["against"]]
+    assert pairs == list(combinations(LANGUAGES, 2))
     assert "3 raters and 11 judgements; 1 time a rater could not tell. Their agreement" in out
     assert f"Krippendorff's alpha of ranks: {whole['alpha']:.3f}." in out
     assert (tmp_path / "evaluation.md").read_text("utf-8") == out

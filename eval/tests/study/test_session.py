@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import json
 from collections import Counter
 from dataclasses import replace
@@ -11,13 +9,12 @@ from pathlib import Path
 
 import pytest
 
-from aidl_eval.judgements import STUDY, Answer, Answers, rater_named, sheets
-from aidl_eval.preference import study_of
+from aidl_eval.judgements import STUDY, Answer, Answers, rater_named, sheets, study_of
 from aidl_eval.store import Store, StoreError
 from aidl_eval.study.session import RefusedError, Session, opened
 from aidl_lang.tools.cli import main
 from eval.tests.study import results
-from eval.tests.study.results import LANGUAGES, PROMPTS
+from eval.tests.study.results import PROMPTS
 
 
 @pytest.fixture
@@ -27,7 +24,7 @@ def store(tmp_path: Path) -> Store:
 
 @pytest.fixture
 def session(store: Store) -> Session:
-    return opened(store, "neutral")
+    return opened(store)
 
 
 def answer(session: Session, rater: str, ranking: tuple[tuple[int, ...], ...] | None) -> None:
@@ -67,15 +64,14 @@ def test_the_order_on_the_screen_is_kept(session: Session, store: Store) -> None
     names = session.shown("north", session.order("north")[0])
     assert line["shown"] == names
     assert line["ranking"] == [[names[2]], [names[0], names[1]]]
-    assert (line["number"], line["count"], line["pictures"]) == (1, 8, "neutral")
 
 
 # --- answers --------------------------------------------------------------------------------------
 
 
 def test_ranks_share_the_mean_of_theirs() -> None:
-    given = ("r", "p", 1, "s", "neutral", ("full", "svg", "openscad"), ("paper", "cadquery"))
-    found = Answer(*given, (("svg",), ("full", "openscad")), 1, 1, "2026-01-31T12:00:00Z")
+    given = ("r", "p", 1, "s", ("full", "svg", "openscad"), ("paper", "cadquery"))
+    found = Answer(*given, (("svg",), ("full", "openscad")), "2026-01-31T12:00:00Z")
     assert found.ranks() == {"svg": 1, "full": 2.5, "openscad": 2.5, "paper": 4.5, "cadquery": 4.5}
     assert found.ranks_of_shown() == {"svg": 1, "full": 2.5, "openscad": 2.5}
     assert replace(found, ranking=None).ranks() == {}
@@ -84,7 +80,7 @@ def test_ranks_share_the_mean_of_theirs() -> None:
 def test_a_rater_goes_on_goes_back_and_changes_an_answer(session: Session, store: Store) -> None:
     for ranking in (((0,), (1,), (2,)), None, ((0, 1, 2),)):
         answer(session, "north", ranking)
-    again = opened(Store(store.folder), "neutral")
+    again = opened(Store(store.folder))
     asked = again.asked("north", None)
     assert (asked["number"], asked["answered"], asked["count"], asked["answer"]) == (3, 3, 8, None)
     assert again.asked("north", 1)["answer"] == {"ranking": None}
@@ -95,7 +91,7 @@ def test_a_rater_goes_on_goes_back_and_changes_an_answer(session: Session, store
     assert again.asked("north", None)["number"] == 3
     study = study_of(store, store.records())
     assert study is not None
-    assert (study.raters, study.judgements, study.skipped, study.outdated) == (["north"], 2, 1, 0)
+    assert (study.raters, study.judgements, study.skipped, study.outdated) == (1, 2, 1, 0)
     assert len(results.lines(store.folder)) == 4
 
 
@@ -107,7 +103,7 @@ def test_half_a_ranking_is_refused(session: Session) -> None:
 
 
 def test_nobody_answers_ahead(session: Session) -> None:
-    ahead = [sheet for sheet in session.order("north") if sheet.is_shown][2]
+    ahead = session.order("north")[2]
     with pytest.raises(RefusedError):
         session.asked("north", 1)
     with pytest.raises(RefusedError):
@@ -129,12 +125,10 @@ STATES = {
 
 def test_who_drew_nothing_is_last_and_who_broke_off_is_left_out(tmp_path: Path) -> None:
     store = results.write(tmp_path, states=STATES)
-    session = opened(store, "neutral")
+    session = opened(store)
     by_name = {sheet.text: (sheet.drawn, sheet.undrawn) for sheet in session.sheets}
     assert by_name == {
         "lamp stand": (("openscad", "svg"), ("full",)),
-        "old key": (("openscad",), ("full", "svg")),
-        "tall mug": ((), LANGUAGES),
         "wide fork": (("openscad", "svg"), ()),
     }
     assert session.asked("north", None)["count"] == 2
@@ -146,26 +140,10 @@ def test_who_drew_nothing_is_last_and_who_broke_off_is_left_out(tmp_path: Path) 
     assert "pictures" not in session.asked("north", None)
     study = study_of(store, store.records())
     assert study is not None
-    assert (study.judgements, study.unasked) == (2, 2)
-    assert dict(study.ranks("full")) == {"lamp_stand": 3, "old_key": 2.5, "tall_mug": 2}
-    assert dict(study.ranks("openscad")) == {"lamp_stand": 1, "old_key": 1, "tall_mug": 2, "wide_fork": 1}
-    assert dict(study.ranks("svg")) == {"lamp_stand": 2, "old_key": 2.5, "tall_mug": 2, "wide_fork": 2}
-    assert dict(study.preferred("full")) == {"lamp_stand": 0, "old_key": 0.25, "tall_mug": 0.5}
-    assert study.over("openscad", "full") == {"lamp_stand": 1, "old_key": 1, "tall_mug": 0.5}
-
-
-def test_what_needs_no_rater_waits_until_its_turn(tmp_path: Path) -> None:
-    """Else a study that has just begun would be one of failures alone."""
-    states = {("old key", language, 1): "none" for language in LANGUAGES}
-    session = opened(results.write(tmp_path, states=states), "neutral")
-    places = set()
-    for rater in map(str, range(12)):
-        at = [sheet.text for sheet in session.order(rater)].index("old key")
-        places.add(at)
-        answer(session, rater, None)
-        own = [line for line in results.lines(tmp_path) if line["rater"] == rater]
-        assert len(own) == (2 if at <= 1 else 1)
-    assert places == {0, 1, 2, 3}
+    assert study.judgements == 2
+    assert dict(study.ranks("full")) == {"lamp_stand": 3}
+    assert dict(study.ranks("openscad")) == {"lamp_stand": 1, "wide_fork": 1}
+    assert dict(study.ranks("svg")) == {"lamp_stand": 2, "wide_fork": 2}
 
 
 def test_answers_to_what_has_changed_do_not_count(session: Session, store: Store) -> None:
@@ -177,7 +155,7 @@ def test_answers_to_what_has_changed_do_not_count(session: Session, store: Store
     study = study_of(store, store.records())
     assert study is not None
     assert (study.judgements, study.outdated) == (7, 1)
-    asked = opened(store, "neutral").asked("north", None)
+    asked = opened(store).asked("north", None)
     assert (asked["answered"], asked["text"]) == (7, "old key")
 
 
@@ -218,8 +196,8 @@ def test_half_a_line_is_cut_and_nothing_else(session: Session, store: Store) -> 
     answer(session, "north", None)
     whole = session.answers.path.read_bytes()
     session.answers.path.write_bytes(whole + whole[:70])
-    assert opened(store, "neutral").asked("north", None)["number"] == 1
-    answer(opened(store, "neutral"), "south", None)
+    assert opened(store).asked("north", None)["number"] == 1
+    answer(opened(store), "south", None)
     assert session.answers.path.read_bytes().startswith(whole)
     assert [line["rater"] for line in results.lines(store.folder)] == ["north", "south"]
     session.answers.path.write_bytes(whole[:20])
@@ -227,16 +205,15 @@ def test_half_a_line_is_cut_and_nothing_else(session: Session, store: Store) -> 
 
 
 def test_two_servers_see_each_other(session: Session, store: Store) -> None:
-    other = opened(store, "neutral")
+    other = opened(store)
     answer(session, "north", None)
     assert other.asked("north", None)["number"] == 1
 
 
 DAMAGES: list[dict[str, object]] = [
-    *({"rater": "=1+1"}, {"run": True}, {"run": 0}, {"prompt": 7}, {"number": 9}, {"more": 1}),
-    *({"shown": ["full", "full", "svg"]}, {"undrawn": ["basic"]}, {"date": "yesterday"}),
-    *({"pictures": "../own"}, {"aidl_study": 2}, {"ranking": 7}, {"ranking": [["full"]]}),
-    *({"ranking": [[], ["full", "svg", "openscad"]]}, {"ranking": [[["full"]]]}),
+    *({"run": True}, {"prompt": 7}, {"more": 1}, {"aidl_study": 2}, {"ranking": 7}),
+    *({"shown": ["full", "full", "svg"]}, {"undrawn": ["basic"]}),
+    *({"ranking": [["full"]]}, {"ranking": [[["full"]]]}),
 ]
 
 
@@ -249,7 +226,7 @@ def test_damaged_lines_are_refused(session: Session, store: Store) -> None:
     for line in (nameless, *(json.loads(second) | damage for damage in DAMAGES)):
         session.answers.path.write_text(f"{first}\n{json.dumps(line)}\n", "utf-8")
         with pytest.raises(StoreError, match=r"study\.jsonl:2` is no answer of a study"):
-            opened(store, "neutral")
+            opened(store)
 
 
 def test_what_is_no_line_is_told(store: Store, capsys: pytest.CaptureFixture[str]) -> None:
@@ -263,18 +240,6 @@ def test_what_is_no_line_is_told(store: Store, capsys: pytest.CaptureFixture[str
         )
 
 
-def test_other_pictures_are_refused(
-    session: Session, store: Store, capsys: pytest.CaptureFixture[str]
-) -> None:
-    answer(session, "north", None)
-    assert main(["eval", "study", str(store.folder), "--no-open", "--pictures", "own"]) == 2
-    assert capsys.readouterr().err == (
-        f"error[E0989]: `{store.folder / STUDY}` has answers to pictures in style `neutral`, not `own`\n"
-        "  = hint: go on with `--pictures neutral`\n"
-        "  = hint: or give that file another name, and a study begins anew\n"
-    )
-
-
 def test_nothing_to_rank_is_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     results.write(tmp_path / "one", languages=["full"])
     for folder in (tmp_path / "one", tmp_path / "none"):
@@ -286,14 +251,13 @@ def test_nothing_to_rank_is_told(tmp_path: Path, capsys: pytest.CaptureFixture[s
 
 
 def test_a_picture_that_is_missing_is_told(store: Store) -> None:
-    path = store.folder / "pictures/old_key/svg/2.neutral.png"
+    path = store.folder / "pictures/old_key/svg/2.png"
     for content in (None, b"", b"GIF89a", b"\x89PNG\r\n\x1a\n"):
         path.unlink(missing_ok=True)
         if content is not None:
             path.write_bytes(content)
-        with pytest.raises(StoreError, match=r"svg/2\.neutral\.png` is no picture"):
-            opened(store, "neutral")
-    assert opened(store, "own")
+        with pytest.raises(StoreError, match=r"svg/2\.png` is no picture"):
+            opened(store)
 
 
 def test_options_of_a_run_are_refused(store: Store, capsys: pytest.CaptureFixture[str]) -> None:
@@ -301,28 +265,6 @@ def test_options_of_a_run_are_refused(store: Store, capsys: pytest.CaptureFixtur
         main(["eval", "--report", "study", str(store.folder)])
     assert stopped.value.code == 2
     assert "`study` takes none of the options of a run" in capsys.readouterr().err
-
-
-def test_answers_are_exported(session: Session, store: Store, capsys: pytest.CaptureFixture[str]) -> None:
-    answer(session, "north", ((0,), (1, 2)))
-    answer(session, "north", None)
-    session.answer("north", 0, session.asked("north", 0)["id"], ((2,), (1,), (0,)))
-    assert main(["eval", "study", str(store.folder), "--export", "-"]) == 0
-    out, err = capsys.readouterr()
-    assert err == f"-: 3 answers of {store.folder / STUDY}\n"
-    found = list(csv.DictReader(io.StringIO(out)))
-    assert [(row["position"], row["rank"], row["answer"], row["counts"]) for row in found] == [
-        ("1", "1.0", "ranked", "replaced"),
-        ("2", "2.5", "ranked", "replaced"),
-        ("3", "2.5", "ranked", "replaced"),
-        ("1", "", "cannot tell", "yes"),
-        ("2", "", "cannot tell", "yes"),
-        ("3", "", "cannot tell", "yes"),
-        ("1", "3.0", "ranked", "yes"),
-        ("2", "2.0", "ranked", "yes"),
-        ("3", "1.0", "ranked", "yes"),
-    ]
-    assert [row["language"] for row in found[:3]] == results.lines(store.folder)[0]["shown"]
 
 
 def test_sheets_without_a_second_language_are_none(tmp_path: Path) -> None:

@@ -32,9 +32,9 @@ DATA = re.compile(r'"data:image/png;base64,([\w+/=]+)"')
 class Site:
     """A client, and what whoever runs the study was told."""
 
-    def __init__(self, store: Store, pictures: str = "neutral") -> None:
+    def __init__(self, store: Store) -> None:
         self.told: list[StoreError] = []
-        app = site(opened(store, pictures), TOKEN, [ADDRESS, "localhost:8123"], self.told.append)
+        app = site(opened(store), TOKEN, [ADDRESS, "localhost:8123"], self.told.append)
         self.client = TestClient(app, base_url=f"http://{ADDRESS}")
 
     def post(self, what: str, **said: Any) -> Any:
@@ -67,12 +67,11 @@ def chunks(png: bytes) -> list[bytes]:
     return found
 
 
-@pytest.fixture(scope="module", params=["neutral", "own"])
-def many(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Site:
+@pytest.fixture(scope="module")
+def many(tmp_path_factory: pytest.TempPathFactory) -> Site:
     """A study of all languages, that goes on through the examples of a property."""
-    folder = tmp_path_factory.mktemp(request.param)
     states = {("old key", "svg", 1): "none", ("tall mug", "full", 1): "broken"}
-    return Site(results.write(folder, languages=list(VARIANTS), states=states), request.param)
+    return Site(results.write(tmp_path_factory.mktemp("many"), languages=list(VARIANTS), states=states))
 
 
 _RATERS = st.text("bcmnqz0123456789 .-_李é", min_size=1, max_size=12).filter(
@@ -123,7 +122,7 @@ def test_the_page_and_its_files_name_no_language(page: Site) -> None:
 
 
 def test_pictures_stand_in_the_order_of_the_rater(page: Site, store: Store) -> None:
-    session = opened(store, "neutral")
+    session = opened(store)
     for rater in ("north", "south", "west"):
         said = page.post("sheet", rater=rater).json()
         sheet = next(sheet for sheet in session.sheets if sheet.id == said["id"])
@@ -143,7 +142,7 @@ def test_pictures_stand_in_the_order_of_the_rater(page: Site, store: Store) -> N
         "/",
         "/wrong/",
         f"/{TOKEN}/study.jsonl",
-        f"/{TOKEN}/pictures/old_key/full/1.neutral.png",
+        f"/{TOKEN}/pictures/old_key/full/1.png",
         f"/{TOKEN}/page/index.html",
         f"/{TOKEN}/page/main.js",
         f"/{TOKEN}/page/..%2fsite.py",
@@ -224,7 +223,7 @@ def test_hostile_answers_are_refused(page: Site, store: Store, change: dict[str,
 def test_what_goes_wrong_with_the_folder_is_not_told_to_raters(tmp_path: Path) -> None:
     store = results.write(tmp_path)
     page = Site(store)
-    for picture in store.folder.rglob("*.neutral.png"):
+    for picture in store.folder.rglob("*.png"):
         picture.write_bytes(b"\x89PNG\r\n\x1a\n")
     answer = page.post("sheet", rater="north")
     assert answer.status_code == 500
