@@ -30,6 +30,17 @@ solid plate {
     assert body.width < 110mm, "it fits the sheet"
 }
 """
+SIGN = """\
+param name = "Ada"
+param width = 60mm in 40..400
+@thickness(3mm)
+solid sign {
+    plate = rectangle(center: origin, width: width, height: 20mm)
+    drawing letters { word = text(name, height: 8mm) }
+    assert letters.width <= width - 6mm, "the name is too long"
+    assert letters.height <= 16mm, "the name is too high"
+}
+"""
 
 
 class Here:

@@ -21,21 +21,7 @@ from aidl_lang.tools.cli import main, sweep
 from aidl_lang.tools.sweeping import session
 from aidl_lang.tools.sweeping.session import Progress
 from tests.commands import Aidl as Command
-from tests.commands import aidl as aidl
-from tests.sweep.here import PLATE, Here
-
-SIGN = """\
-param name = "Ada"
-param width = 60mm in 40..400
-@thickness(3mm)
-solid sign {
-    plate = rectangle(center: origin, width: width, height: 20mm)
-    drawing letters { word = text(name, height: 8mm) }
-    assert letters.width <= width - 6mm, "the name is too long"
-    assert letters.height <= 16mm, "the name is too high"
-}
-"""
-
+from tests.sweep.here import PLATE, SIGN
 
 BORED = """
 solid plate {
@@ -44,17 +30,6 @@ solid plate {
     hole slot { rim = rectangle(center: fixed((30, 0)), width: 10, height: 10) }
 }
 """
-
-
-@pytest.fixture
-def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """An empty working directory with programs in it; sweeps run in this process."""
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setenv("NO_COLOR", "1")
-    (tmp_path / "plate.aidl").write_text(PLATE)
-    (tmp_path / "sign.aidl").write_text(SIGN)
-    monkeypatch.setattr(session, "Guarded", lambda workers, preload: Here())
-    return tmp_path
 
 
 def test_failures_are_told_with_their_commands(folder: Path, aidl: Command) -> None:

@@ -27,8 +27,8 @@ PROGRAM = 'import "lib.aidl"\n' + PLATE.replace("height: 30mm", "height: tall")
 
 @pytest.fixture(scope="module")
 def shared(tmp_path_factory: pytest.TempPathFactory) -> Iterator[LocalCluster]:
-    """A cluster that nobody kills."""
-    cluster = LocalCluster(tmp_path_factory.mktemp("logs"), 2)
+    """A cluster that nobody kills, with one worker for two calls at a time."""
+    cluster = LocalCluster(tmp_path_factory.mktemp("logs"), workers=1, threads=2)
     yield cluster
     cluster.close()
 
@@ -36,7 +36,7 @@ def shared(tmp_path_factory: pytest.TempPathFactory) -> Iterator[LocalCluster]:
 @pytest.fixture
 def two(tmp_path: Path) -> Iterator[LocalCluster]:
     (tmp_path / "logs").mkdir()
-    cluster = LocalCluster(tmp_path / "logs", 2)
+    cluster = LocalCluster(tmp_path / "logs", workers=2)
     yield cluster
     cluster.close()
 
@@ -92,14 +92,11 @@ def local(folder: Path, count: int) -> None:
     assert run.returncode == 1, said  # those wider than the sheet fail
 
 
-def test_a_sweep_on_a_cluster_equals_one_here(
-    tmp_path: Path, shared: LocalCluster, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    write_programs(tmp_path)
-    monkeypatch.chdir(tmp_path)
+def test_a_sweep_on_a_cluster_equals_one_here(folder: Path, shared: LocalCluster) -> None:
+    write_programs(folder)
     assert main(words_for("local.csv", 6)) == 1
     assert main(words_for("remote.csv", 6, "--on", shared.address)) == 1
-    same(tmp_path, "local.csv", "remote.csv", 6)
+    same(folder, "local.csv", "remote.csv", 6)
 
 
 @pytest.mark.slow
@@ -159,9 +156,8 @@ def test_limits_hold_on_a_cluster(tmp_path: Path, shared: LocalCluster) -> None:
     engine = Cluster(shared.address, "aidl_lang.common.processes")
     try:
         crew: Crew[str, str] = Crew(engine)
-        words = ["well", "die", "hang", "raise", "too"]
-        for word in words:
-            crew.give(word, 5.0, obey, word, str(tmp_path))
+        for word in ("well", "die", "hang", "raise", "too"):
+            crew.give(word, 1.0 if word == "hang" else 60.0, obey, word, str(tmp_path))
         found: dict[str, str | Broke] = {}
         while crew:
             found |= dict(crew.came(60))
@@ -190,7 +186,7 @@ def test_a_worker_with_another_package_is_told(shared: LocalCluster, monkeypatch
 
 
 def test_a_scheduler_that_is_not_there_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(cluster_module, "_CONNECTING", 1.0)
+    monkeypatch.setattr(cluster_module, "_CONNECTING", 0.3)
     address = f"tcp://127.0.0.1:{free_port()}"
     with pytest.raises(AidlError) as raised:
         Cluster(address, "aidl_lang.common.processes")
