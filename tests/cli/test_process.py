@@ -23,10 +23,6 @@ def _package_is_found_from_anywhere(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("PYTHONPATH", str(ROOT))
 
 
-def run(*arguments: str, **more: object) -> subprocess.CompletedProcess[str]:
-    return subprocess.run([*COMMAND, *arguments], capture_output=True, text=True, timeout=60, **more)  # type: ignore[call-overload,no-any-return]
-
-
 def test_installed_command_compiles(folder: Path) -> None:
     command = Path(sys.executable).parent / "aidl"
     if not command.exists():
@@ -99,9 +95,12 @@ def test_reader_that_goes_away(folder: Path) -> None:
 
 def test_terminal_without_unicode(folder: Path) -> None:
     (folder / "wide.aidl").write_text("solid 世 { = }\n", encoding="utf-8")
-    result = run("check", "wide.aidl", env={**os.environ, "PYTHONIOENCODING": "ascii"})
-    assert result.returncode == 1
-    assert "Traceback" not in result.stderr
+    environment = {**os.environ, "PYTHONIOENCODING": "ascii"}
+    done = subprocess.run(
+        [*COMMAND, "check", "wide.aidl"], env=environment, stderr=subprocess.PIPE, check=False
+    )
+    assert done.returncode == 1
+    assert b"Traceback" not in done.stderr
 
 
 def test_watch_draws_again_on_save_and_stops_quietly(folder: Path) -> None:

@@ -86,10 +86,11 @@ def finish(crew: Crew[str, str]) -> None:
         crew.came(60)
 
 
-def local(folder: Path, count: int) -> None:
-    run = begin(folder, "local.csv", count)
-    said = run.communicate()[1]
-    assert run.returncode == 1, said  # those wider than the sheet fail
+def ended(run: subprocess.Popen[str], code: int = 1) -> str:
+    """What a sweep has said at its end; those wider than the sheet fail."""
+    said = run.communicate(timeout=600)[1]
+    assert run.returncode == code, said
+    return said
 
 
 def test_a_sweep_on_a_cluster_equals_one_here(folder: Path, shared: LocalCluster) -> None:
@@ -101,29 +102,24 @@ def test_a_sweep_on_a_cluster_equals_one_here(folder: Path, shared: LocalCluster
 
 @pytest.mark.slow
 def test_three_hundred_variants_and_a_worker_killed_in_the_middle(tmp_path: Path, two: LocalCluster) -> None:
-    local(tmp_path, 300)
-    whole = begin(tmp_path, "remote.csv", 300, "--on", two.address)
-    said = whole.communicate(timeout=600)[1]
-    assert whole.returncode == 1, said
+    ended(begin(tmp_path, "local.csv", 300))
+    ended(begin(tmp_path, "remote.csv", 300, "--on", two.address))
     same(tmp_path, "local.csv", "remote.csv", 300)
     run = begin(tmp_path, "killed.csv", 300, "--on", two.address)
     wait_until_done(run, 40)
     two.kill_worker()
     two.add_worker()
-    said = run.communicate(timeout=600)[1]
-    assert run.returncode == 1, said
+    ended(run)
     same(tmp_path, "local.csv", "killed.csv", 300)
 
 
 @pytest.mark.slow
 def test_the_scheduler_may_be_started_anew(tmp_path: Path, two: LocalCluster) -> None:
-    local(tmp_path, 120)
+    ended(begin(tmp_path, "local.csv", 120))
     run = begin(tmp_path, "remote.csv", 120, "--on", two.address)
     wait_until_done(run, 20)
     two.restart()
-    said = run.communicate(timeout=600)[1]
-    assert run.returncode == 1, said
-    assert "had to be begun again, as what compiled them was gone" in said
+    assert "had to be begun again, as what compiled them was gone" in ended(run)
     same(tmp_path, "local.csv", "remote.csv", 120)
 
 
@@ -131,12 +127,11 @@ def test_the_scheduler_may_be_started_anew(tmp_path: Path, two: LocalCluster) ->
 def test_a_client_that_is_interrupted_leaves_nothing_behind_and_goes_on(
     tmp_path: Path, two: LocalCluster
 ) -> None:
-    local(tmp_path, 120)
+    ended(begin(tmp_path, "local.csv", 120))
     run = begin(tmp_path, "remote.csv", 120, "--on", two.address)
     wait_until_done(run, 20)
     os.kill(run.pid, signal.SIGINT)
-    said = run.communicate(timeout=120)[1]
-    assert run.returncode == 130, said
+    said = ended(run, 130)
     assert "`remote.csv.sweep` has what is done; the same command with `--resume` goes on" in said
     from distributed import Client
 
@@ -145,10 +140,7 @@ def test_a_client_that_is_interrupted_leaves_nothing_behind_and_goes_on(
         while any(client.processing().values()) and time.monotonic() < until:
             time.sleep(0.5)
         assert not any(client.processing().values())
-    again = begin(tmp_path, "remote.csv", 120, "--on", two.address, "--resume")
-    said = again.communicate(timeout=600)[1]
-    assert again.returncode == 1, said
-    assert "known before" in said
+    assert "known before" in ended(begin(tmp_path, "remote.csv", 120, "--on", two.address, "--resume"))
     same(tmp_path, "local.csv", "remote.csv", 120)
 
 
