@@ -126,7 +126,7 @@ class Scripted:
 
     def __post_init__(self) -> None:
         self._lock = threading.Lock()
-        self._closing = threading.Event()
+        self.closing = threading.Event()
         self._providers: list[Closable] = []
         self._server = ThreadingHTTPServer(("127.0.0.1", 0), partial(_Handler, self))
         self._server.daemon_threads = False  # so that closing waits for them
@@ -164,11 +164,8 @@ class Scripted:
             return Failed(400, f"the script has only {len(self.steps)} steps")
         return step(request) if callable(step) else step
 
-    def wait(self) -> None:
-        self._closing.wait()
-
     def close(self) -> None:
-        self._closing.set()
+        self.closing.set()
         for provider in self._providers:
             provider.close()
         self._server.shutdown()
@@ -238,7 +235,7 @@ class _Handler(BaseHTTPRequestHandler):
             case Hangs(text):
                 if text:
                     self._stream(protocol.events(Says(text), whole=False), ends=False)
-                self.script.wait()
+                self.script.closing.wait()
 
     def _json(self, status: int, document: Json, *headers: tuple[str, str]) -> None:
         self._send(status, "application/json", json.dumps(document).encode(), *headers)
