@@ -109,7 +109,7 @@ bench-peers: $(READY) ## install those peers, into benchmarks/solver/.peers
 	$(BIN)/python benchmarks/solver/install_peers.py
 
 accept: $(READY) ## take the present results as the new goldens, the README's pictures among them
-	AIDL_ACCEPT=1 $(BIN)/python -m pytest $(wildcard tests/golden tests/spec)
+	AIDL_ACCEPT=1 $(BIN)/python -m pytest $(wildcard tests/golden tests/spec tests/cli/test_transcripts.py)
 	$(BIN)/aidl compile examples/telephone.aidl -o docs/images/telephone.svg --quiet
 	$(BIN)/aidl compile examples/motor_bracket.aidl -o docs/images/motor_bracket.svg --dimension --quiet
 

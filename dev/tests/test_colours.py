@@ -4,7 +4,12 @@ from __future__ import annotations
 
 import json
 import re
+from functools import cache
+from pathlib import Path
 
+import pytest
+
+from aidl_dev.grammars import formats
 from aidl_dev.highlighting.scopes import SCOPES
 from aidl_dev.highlighting.site import write
 from aidl_lang.tools.highlighting import CLASSES
@@ -12,7 +17,8 @@ from aidl_lang.tools.vocabulary import vocabulary
 from tests.documents import ROOT
 
 
-def test_what_is_right_is_not_written_again(tmp_path) -> None:
+def test_what_is_right_is_not_written_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(formats, "texts", cache(formats.texts))  # which take long to work out
     (tmp_path / "tests/editors").mkdir(parents=True)
     (tmp_path / "tests/editors/classes.aidl").write_text("x = 5mm\n", "utf-8")
     write(tmp_path)

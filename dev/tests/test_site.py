@@ -23,6 +23,7 @@ from aidl_site.staging import Staging
 from tests.commands import Aidl
 from tests.commands import aidl as aidl
 from tests.documents import ROOT, Block, blocks
+from tests.sweep.here import at_once as at_once
 
 TUTORIAL = ROOT / "docs" / "tutorial.md"
 GALLERY = [path.stem for path in sorted((ROOT / "examples" / "gallery").glob("*.aidl"))]
@@ -152,7 +153,8 @@ def _pages(folder: str) -> list[Path]:
 
 def test_pictures_are_those_of_the_programs_before_them() -> None:
     drawn = pictures.pictures(ROOT)
-    stale = [path for path, data in drawn.items() if not _is(ROOT / path, data)]
+    there = {path: (ROOT / path).read_bytes() for path in drawn if (ROOT / path).is_file()}
+    stale = [path for path, data in drawn.items() if there.get(path) != data]
     assert stale == [], "run `make reference`"
     folders = {path.rpartition("/")[0] for path in drawn}
     found = {p.relative_to(ROOT).as_posix() for folder in folders for p in (ROOT / folder).glob("*")}
@@ -160,12 +162,8 @@ def test_pictures_are_those_of_the_programs_before_them() -> None:
     assert len(drawn) > 25
 
 
-def _is(path: Path, data: bytes) -> bool:
-    return path.is_file() and path.read_bytes() == data
-
-
 @pytest.fixture
-def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, at_once: None) -> Path:
     """The folder that commands run in."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("NO_COLOR", "1")

@@ -9,9 +9,8 @@ import re
 import signal
 import subprocess
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
-from pathlib import Path
 from typing import Any
 
 import anyio.from_thread
@@ -21,7 +20,11 @@ from PIL import Image
 
 from aidl_lang.tools.cli import main
 from tests.agents.test_tools import BOLT, IMPORTS, PLATE, TELEPHONE
+from tests.cli.conftest import folder as folder
+from tests.commands import Aidl, Result
+from tests.commands import aidl as aidl
 from tests.documents import ROOT
+from tests.sweep.here import at_once as at_once
 
 COMMAND = [sys.executable, "-m", "aidl_lang", "mcp"]
 
@@ -198,34 +201,16 @@ def _status(address: str, headers: dict[str, str]) -> int:
 # --- What keeps it from starting -------------------------------------------------------------------
 
 
-@pytest.fixture
-def said(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> Callable[..., str]:
-    monkeypatch.setenv("NO_COLOR", "1")
-
-    def run(*arguments: str) -> str:
-        assert main(["mcp", *arguments]) == 2
-        return capsys.readouterr().err
-
-    return run
-
-
-def test_packages_that_are_missing(said: Callable[..., str], monkeypatch: pytest.MonkeyPatch) -> None:
+def test_packages_that_are_missing(aidl: Aidl, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(
         "aidl_lang.tools.cli.serving.find_spec", lambda name: None if name == "mcp" else object()
     )
-    assert said() == (
-        "error[E0942]: the server needs `mcp`, not installed here\n  = hint: pip install 'aidl-lang[mcp]'\n"
-    )
+    told = "error[E0942]: the server needs `mcp`, not installed here\n"
+    assert aidl("mcp") == Result(2, "", told + "  = hint: pip install 'aidl-lang[mcp]'\n")
 
 
-def test_root_that_is_no_folder(said: Callable[..., str], tmp_path: Path) -> None:
-    name = str(tmp_path / "nothing")
-    assert said("--root", name) == f"error[E0942]: there is no folder `{name}` to import from\n"
-
-
-def test_token_that_is_none(said: Callable[..., str], monkeypatch: pytest.MonkeyPatch) -> None:
+def test_token_that_is_none(aidl: Aidl, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("AIDL_MCP_TOKEN", "../short")
-    assert said("--http", "0") == (
-        "error[E0942]: AIDL_MCP_TOKEN is no token\n"
-        "  = hint: it has 16 letters, digits, `-` and `_`, or more\n"
-    )
+    told = "error[E0942]: AIDL_MCP_TOKEN is no token\n"
+    hint = "  = hint: it has 16 letters, digits, `-` and `_`, or more\n"
+    assert aidl("mcp", "--http", "0") == Result(2, "", told + hint)

@@ -17,6 +17,7 @@ from aidl_lang.tools.agents.calling import Answer, answer
 from aidl_lang.tools.agents.tools import Tools
 from aidl_lang.tools.agents.workspace import LONGEST, Limits, Workspace, quantity
 from tests.documents import ROOT
+from tests.sweep.here import at_once as at_once
 
 TELEPHONE = (ROOT / "examples" / "telephone.aidl").read_text("utf-8")
 MODEL = jsonschema.Draft202012Validator(json.loads((ROOT / "docs" / "model.schema.json").read_text("utf-8")))
@@ -101,7 +102,7 @@ def test_model_is_valid_and_can_be_had_by_path() -> None:
     assert "did you mean `telephone.receiver`?" in refused(missing)
 
 
-@pytest.mark.parametrize("most", [200, 4_000, 8_000, 12_000, 16_000])
+@pytest.mark.parametrize("most", [200, 8_000])
 def test_model_is_shortened_with_a_word(most: int) -> None:
     workshop = Tools(Workspace(limits=Limits(text=most)))
     made = ask("compile", workshop, program=TELEPHONE, formats=["model"])
@@ -202,27 +203,27 @@ def test_edit_param_changes_nothing_else(name: str, value: object, old: str, new
         (
             "width",
             90,
-            "error E0945: `width` is 90 as written, outside its range 20..80\n"
+            "`width` is 90 as written, outside its range 20..80\n"
             "  hint: give a value in 20..80, or widen the range of the `param`",
         ),
         (
             "widht",
             50,
-            "error E0945: there is no param `widht`\n  hint: did you mean `width`?\n"
+            "there is no param `widht`\n  hint: did you mean `width`?\n"
             "  hint: params of this program: `width`, `edge`, `thin`",
         ),
-        ("thin", 3, "error E0945: `3` does not fit: `thin` is true or false"),
-        ("width", True, "error E0945: `True` does not fit: `width` is a number"),
-        ("edge", 3, "error E0945: `3` does not fit: `edge` is a text"),
+        ("thin", 3, "`3` does not fit: `thin` is true or false"),
+        ("width", True, "`True` does not fit: `width` is a number"),
+        ("edge", 3, "`3` does not fit: `edge` is a text"),
         (
             "width",
             "5cm + origin",
-            "error E0945: `5cm + origin` does not fit `width`: `+` does not work on a length and a point",
+            "`5cm + origin` does not fit `width`: `+` does not work on a length and a point",
         ),
     ],
 )
 def test_edit_param_refuses(name: str, value: object, text: str) -> None:
-    assert refused(ask("edit_param", program=PLATE, name=name, value=value)) == text
+    assert refused(ask("edit_param", program=PLATE, name=name, value=value)) == f"error E0945: {text}"
 
 
 def test_edit_param_refuses_what_another_file_declares() -> None:
@@ -294,6 +295,8 @@ def test_guide_by_sections() -> None:
 
 # --- Arguments and limits --------------------------------------------------------------------------
 
+TEXT = "\n  hint: The text of the whole AIDL program."
+
 
 @pytest.mark.parametrize(
     ("name", "arguments", "text"),
@@ -301,42 +304,32 @@ def test_guide_by_sections() -> None:
         (
             "chek",
             {},
-            "error E0944: there is no tool `chek`\n  hint: did you mean `check`?\n  hint: tools: check, "
-            "compile, guide, search, explain, measure, edit_param, explain_conflict",
+            "there is no tool `chek`\n  hint: did you mean `check`?\n  hint: tools: check, compile, guide, "
+            "search, explain, measure, edit_param, explain_conflict",
         ),
         (
             "compile",
             {"program": "", "format": "png"},
-            "error E0944: `compile` has no parameter `format`\n  hint: did you mean `formats`?\n"
+            "`compile` has no parameter `format`\n  hint: did you mean `formats`?\n"
             "  hint: parameters: program, params, files, formats, path, dimensioned",
         ),
-        (
-            "check",
-            {"program": None},
-            "error E0944: `check` needs `program`\n  hint: The text of the whole AIDL program.",
-        ),
-        (
-            "check",
-            {"program": ["solid"]},
-            'error E0944: `program` of `check` takes a text, not `["solid"]`\n'
-            "  hint: The text of the whole AIDL program.",
-        ),
+        ("check", {"program": None}, f"`check` needs `program`{TEXT}"),
+        ("check", {"program": ["solid"]}, f'`program` of `check` takes a text, not `["solid"]`{TEXT}'),
         (
             "search",
             {"query": "x", "limit": 2.5},
-            "error E0944: `limit` of `search` takes a whole number, not `2.5`\n"
-            "  hint: How many hits at most.",
+            "`limit` of `search` takes a whole number, not `2.5`\n  hint: How many hits at most.",
         ),
         (
             "compile",
             {"program": "", "dimensioned": "yes"},
-            'error E0944: `dimensioned` of `compile` takes true or false, not `"yes"`\n'
+            '`dimensioned` of `compile` takes true or false, not `"yes"`\n'
             "  hint: Draw the dimensions of what is sized.",
         ),
     ],
 )
 def test_arguments_that_do_not_fit(name: str, arguments: Mapping[str, Any], text: str) -> None:
-    assert refused(answer(Tools(), name, arguments)) == text
+    assert refused(answer(Tools(), name, arguments)) == f"error E0944: {text}"
 
 
 @pytest.mark.parametrize("value", [float("nan"), float("inf"), -float("inf"), 10**310, [1], {}])
@@ -371,7 +364,6 @@ def test_size_of_programs_is_limited() -> None:
     ("program", "code"),
     [
         ("fn f(x) = f(x + 1)\nsolid a { b = circle(radius: f(1)) }", "E0806"),
-        ("solid a { for i in 0..99999 { b[i] = circle(radius: 3) } }", "E0805"),
         ("solid a { " + "solid b { " * 3_000 + "}" * 3_001, "E0802"),
     ],
 )
@@ -381,6 +373,7 @@ def test_programs_without_end(program: str, code: str) -> None:
     assert code in [f["code"] for f in made.data["findings"]["listed"]]
 
 
+@pytest.mark.usefixtures("at_once")
 def test_check_with_ranges_tells_where_something_changes_kind() -> None:
     program = PLATE.replace("circle(center: fixed((10, 0))", "circle(center: fixed((width / 4, 3))")
     made = ask("check", program=program.replace("20..80", "14..80"), ranges=True)

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from tests.commands import aidl as aidl
+from tests.sweep.here import at_once as at_once
 
 GOOD = """\
 /// How wide the plate is.
@@ -27,7 +28,7 @@ solid plate {
 
 
 @pytest.fixture
-def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, at_once: None) -> Path:
     """An empty working directory with three programs in it."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("NO_COLOR", "1")

@@ -116,14 +116,3 @@ def test_what_is_imported_in_inches_keeps_its_size(aidl: Aidl, plate: Path) -> N
     )
     read = aidl("check", "back.aidl")
     assert read.code == 0, read.err
-
-
-@pytest.mark.parametrize("suffix", ["pdf", "png", "json", "csv", "stl", "step", "3mf"])
-def test_other_formats_have_no_inches(aidl: Aidl, plate: Path, suffix: str) -> None:
-    result = aidl("compile", "p.aidl", "--units", "in", "-o", "p.svg", "-o", f"p.{suffix}")
-    assert result.code == 2
-    assert (
-        f"error[E0924]: `--units in` has no meaning for `.{suffix}`\n  = hint: formats for it: .dxf, .svg\n"
-        in (result.err)
-    )
-    assert not (plate / "p.svg").exists()

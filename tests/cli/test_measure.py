@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import json
 import math
+from itertools import combinations
 from pathlib import Path
 
 import pytest
 
 import aidl_lang
 from aidl_lang.common.materials import densities, density, similar
-from tests.commands import Aidl, Result
+from tests.commands import Aidl
 
 BOX = """\
 @material("6 mm birch plywood") @thickness(6mm)
@@ -35,65 +36,16 @@ def box(folder: Path) -> str:
     return "box.aidl"
 
 
-def test_text_of_a_single_body(aidl: Aidl, folder: Path) -> None:
-    (folder / "sign.aidl").write_text(
-        '@thickness(4mm) @material("MDF, 4 mm")\n'
-        "solid sign { edge = rectangle(center: origin, width: 40, height: 20) }\n"
-    )
-    assert aidl("measure", "sign.aidl") == Result(
-        0,
-        """\
-sign: a body
-  area       800 mm²
-  perimeter  120 mm
-  size       40 × 20 mm
-  box        (-20, -10) to (20, 10)
-  centroid   (0, 0)
-  outline    1 piece, 0 holes
-  moments    Ixx 26666.7, Iyy 106667, Ixy 0 mm⁴ about the centroid
-             106667 about the axis at 90°, 26666.7 across it, polar 133333 mm⁴
-  wall       20 mm, from (0, -10) to (0, 10)
-  gap        none
-  thickness  4 mm
-  material   MDF, 4 mm, 750 kg/m³
-  volume     3200 mm³
-  mass       2.4 g
-""",
-        "",
-    )
-
-
-def test_text_of_several_bodies(aidl: Aidl, box: str) -> None:
-    result = aidl("measure", box)
-    assert result.code == 0
-    assert "warning[W0705]" in result.err
-    lines = result.out.splitlines()
-    assert lines[0] == "box: 3 bodies"
-    assert "  wall       10 mm, from (0, 19)" not in result.out
-    table = lines[lines.index("") + 1 :]
-    assert table[0].split("  ")[0] == "body"
-    assert [row.split()[0] for row in table[1:4]] == ["box.floor", "box.lid", "box.pin"]
-    assert [" ".join(row.split()) for row in table[5:8]] == [
-        "box.floor box.pin touching",
-        "box.floor box.lid 27 mm apart",
-        "box.lid box.pin 70 mm apart",
-    ]
-    assert table[8] == "touches no other: `box.lid`"
-
-
-def test_far_bodies_are_compared_too(aidl: Aidl, folder: Path) -> None:
-    """More discs than the drawing compares pair by pair, 30 mm apart, of a radius of 10."""
-    (folder / "row.aidl").write_text(
-        "assembly row { for i in 0..29 { @detached solid d[i] "
-        "{ c = circle(center: fixed((30 * i, 0)), radius: 10) } } }"
-    )
-    document = json.loads(aidl("measure", "row.aidl", "--json").out)
+def test_far_bodies_are_compared_too(aidl: Aidl) -> None:
+    """More discs than the drawing compares pair by pair."""
+    row = "assembly row { for i in 0..29 { @detached solid d[i] at (30 * i, 0) { c = circle(radius: 10) } } }"
+    document = json.loads(aidl("measure", "-", "--json", stdin=row).out)
     assert document["all_pairs"]
     gaps = {(p["a"], p["b"]): p["gap"] for p in document["pairs"]}
-    assert len(gaps) == 30 * 29 / 2
-    for (a, b), gap in gaps.items():
-        one, other = (int(path.removeprefix("row.d[").removesuffix("]")) for path in (a, b))
-        assert gap == pytest.approx(30 * abs(one - other) - 20)
+    names = [f"row.d[{i}]" for i in range(30)]
+    assert gaps == pytest.approx(
+        {(names[i], names[k]): 30 * (k - i) - 20 for i, k in combinations(range(30), 2)}
+    )
 
 
 def test_json(aidl: Aidl, box: str) -> None:
@@ -149,72 +101,11 @@ def test_paths_name_structures_holes_and_outlines(aidl: Aidl, box: str) -> None:
     assert [p["mass"] for p in parts[1:4]] == [None, None, None]
 
 
-def test_an_unknown_path(aidl: Aidl, folder: Path) -> None:
-    (folder / "pair.aidl").write_text(
-        "assembly pair {\n    solid left { c = circle(center: fixed((0, 0)), radius: 5) }\n"
-        "    solid right { c = circle(center: fixed((10, 0)), radius: 5) }\n"
-        "    drawing mark { stroke = line(start: fixed((0, 0)), end: fixed((5, 5))) }\n}\n"
-    )
-    assert aidl("measure", "pair.aidl", "rihgt") == Result(
-        2,
-        "",
-        "error[E0919]: there is no `rihgt` in the drawing\n"
-        "  = hint: did you mean `pair.right`?\n"
-        "  = hint: there is `pair.left`, `pair.right`\n",
-    )
-    assert aidl("measure", "pair.aidl", "mark").err == (
-        "error[E0919]: `mark` is a drawing that covers no area\n"
-        "  = hint: there is `pair.left`, `pair.right`\n"
-    )
-    assert aidl("measure", "pair.aidl", "mark.stroke").err == (
-        "error[E0919]: `mark.stroke` encloses no area: its curves do not close\n"
-        "  = hint: there is `pair.left`, `pair.right`\n"
-    )
-
-
-def test_unknown_materials(aidl: Aidl, folder: Path) -> None:
-    text = '@thickness(2mm) @material("{}")\nsolid s {{ c = square(center: origin, size: 10) }}\n'
-    (folder / "s.aidl").write_text(text.format("linoleum"))
-    result = aidl("measure", "s.aidl")
-    assert result.code == 0
-    assert result.err.startswith(
-        "note[N0731]: the density of `linoleum` is not known, so `s` has no mass\n --> s.aidl:1:1\n"
-    )
-    assert '  = hint: say it in kg/m³: `--density "linoleum=1200"`\n' in result.err
-    assert "mass" not in result.out
-    told = aidl("measure", "s.aidl", "--density", "Linoleum = 1200 kg/m3")
-    assert told.err == ""
-    assert "  mass       0.24 g\n" in told.out
-    (folder / "s.aidl").write_text(text.format("birch plywod"))
-    assert "note[N0731]" not in aidl("measure", "s.aidl").err  # birch
-    (folder / "s.aidl").write_text(text.format("alumnium"))
-    assert "did you mean `aluminium`" in aidl("measure", "s.aidl").err
-
-
-@pytest.mark.parametrize("wrong", ["oak", "oak=", "=700", "oak=-1", "oak=nan", "oak=inf", "oak=heavy"])
-def test_wrong_densities(aidl: Aidl, wrong: str) -> None:
-    result = aidl("measure", "good.aidl", "--density", wrong)
-    assert result.code == 2
-    assert 'expected NAME=KG/M3, as in "oak=720"' in result.err
-
-
 def test_a_wrong_program_ends_as_with_compile(aidl: Aidl) -> None:
     for name in ("wrong.aidl", "unsolvable.aidl"):
         result = aidl("measure", name)
         assert (result.code, result.out) == (1, "")
         assert "error[" in result.err
-    assert aidl("measure", "missing.aidl").code == 2
-
-
-def test_params_are_set(aidl: Aidl) -> None:
-    assert "  size       60 × 20 mm\n" in aidl("measure", "good.aidl", "-D", "width=60").out
-
-
-def test_a_program_of_strokes_alone(aidl: Aidl) -> None:
-    result = aidl("measure", "-", stdin="drawing d { l = line(start: fixed((0, 0)), end: fixed((5, 2))) }")
-    assert result.code == 0
-    assert result.out.startswith("d: 0 bodies\n  area       0 mm²\n")
-    assert "  size       5 × 2 mm\n" in result.out
 
 
 def test_forty_bodies(aidl: Aidl) -> None:
@@ -287,15 +178,7 @@ assembly table {
 """
 
 
-def test_all_pieces_of_a_part_weigh(aidl: Aidl, folder: Path) -> None:
-    (folder / "table.aidl").write_text(LEGS)
-    text = aidl("measure", "table.aidl").out
-    assert "  volume     1.62e+06 mm³\n  mass       1.1664 kg\n" in text
-    assert (
-        "mass g  quantity\ntable.leg     20000           900  50 × 400      0       50   259.2         4\n"
-        in text
-    )
-    assert "  quantity   4 pieces, of which this is one\n" in aidl("measure", "table.aidl", "leg").out
+def test_all_pieces_of_a_part_weigh() -> None:
     whole, leg = (aidl_lang.compile(LEGS).measure(*path) for path in ([], ["leg"]))
     assert (whole.mass, leg.mass, leg.quantity) == (pytest.approx(1166.4), pytest.approx(259.2), 4)
 

@@ -7,10 +7,10 @@ from pathlib import Path
 
 import ezdxf
 import pytest
-from svgelements import SVG
 from svgelements import Path as SvgPath
 
 from tests.commands import Aidl
+from tests.export.readers import svg_paths
 
 TAG = """\
 @thickness(6mm)
@@ -26,10 +26,16 @@ solid tag {
 CUTTER = ("--profile", "lightburn")
 
 
+def written(folder: Path, name: str) -> None:
+    """A program, and one that imports what is made of it."""
+    (folder / "tag.aidl").write_text(TAG)
+    (folder / "again.aidl").write_text(f'import "{name}" as tag\nsolid again {{ body = tag() }}\n')
+
+
 def operations(path: Path) -> dict[str, list[float]]:
     """The lengths of what is done along lines, by operation, in an SVG for a cutter."""
     found = defaultdict(list)
-    for each in SVG.parse(path, ppi=25.4).elements(lambda e: isinstance(e, SvgPath)):
+    for each in svg_paths(path.read_bytes()):
         lengths = [SvgPath(way).length() for way in each.as_subpaths()]
         found[each.values["data-operation"]] += lengths
     return {operation: sorted(lengths) for operation, lengths in found.items()}
@@ -42,8 +48,7 @@ def operations(path: Path) -> dict[str, list[float]]:
 def test_what_is_engraved_stays_engraved(
     aidl: Aidl, folder: Path, name: str, profile: tuple[str, ...]
 ) -> None:
-    (folder / "tag.aidl").write_text(TAG)
-    (folder / "again.aidl").write_text(f'import "{name}" as tag\nsolid again {{ body = tag() }}\n')
+    written(folder, name)
     kept = profile if profile[1:] == ("plain",) else CUTTER  # which letters are followed by
     assert aidl("compile", "tag.aidl", "-o", name, *profile).code == 0
     assert aidl("compile", "tag.aidl", "-o", "first.svg", *kept).code == 0
@@ -56,8 +61,7 @@ def test_what_is_engraved_stays_engraved(
 
 @pytest.mark.parametrize("name", ["p.svg", "p.dxf"])
 def test_layers_and_colours_come_back(aidl: Aidl, folder: Path, name: str) -> None:
-    (folder / "tag.aidl").write_text(TAG)
-    (folder / "again.aidl").write_text(f'import "{name}" as tag\nsolid again {{ body = tag() }}\n')
+    written(folder, name)
     assert aidl("compile", "tag.aidl", "-o", name).code == 0
     assert aidl("compile", "again.aidl", "-o", "second.dxf").code == 0
     found = list(ezdxf.readfile(folder / "second.dxf").modelspace())
@@ -66,8 +70,7 @@ def test_layers_and_colours_come_back(aidl: Aidl, folder: Path, name: str) -> No
 
 
 def test_what_explains_a_picture_is_no_part_of_it(aidl: Aidl, folder: Path) -> None:
-    (folder / "tag.aidl").write_text(TAG)
-    (folder / "again.aidl").write_text('import "p.svg" as tag\nsolid again { body = tag() }\n')
+    written(folder, "p.svg")
     aidl("compile", "tag.aidl", "-o", "p.svg", "--dimension", "--show", "names,points,bbox")
     measured = aidl("measure", "again.aidl").out
     assert "size       60 × 30 mm" in measured

@@ -6,11 +6,13 @@ import os
 import signal
 import subprocess
 import sys
+import threading
 import time
 from pathlib import Path
 
 import pytest
 
+from tests.commands import Aidl, Result
 from tests.documents import ROOT
 
 COMMAND = [sys.executable, "-m", "aidl_lang"]
@@ -19,10 +21,6 @@ COMMAND = [sys.executable, "-m", "aidl_lang"]
 @pytest.fixture(autouse=True)
 def _package_is_found_from_anywhere(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("PYTHONPATH", str(ROOT))
-
-
-def run(*arguments: str, **more: object) -> subprocess.CompletedProcess[str]:
-    return subprocess.run([*COMMAND, *arguments], capture_output=True, text=True, timeout=60, **more)  # type: ignore[call-overload,no-any-return]
 
 
 def test_installed_command_compiles(folder: Path) -> None:
@@ -97,35 +95,16 @@ def test_reader_that_goes_away(folder: Path) -> None:
 
 def test_terminal_without_unicode(folder: Path) -> None:
     (folder / "wide.aidl").write_text("solid 世 { = }\n", encoding="utf-8")
-    result = run("check", "wide.aidl", env={**os.environ, "PYTHONIOENCODING": "ascii"})
-    assert result.returncode == 1
-    assert "Traceback" not in result.stderr
+    environment = {**os.environ, "PYTHONIOENCODING": "ascii"}
+    done = subprocess.run(
+        [*COMMAND, "check", "wide.aidl"], env=environment, stderr=subprocess.PIPE, check=False
+    )
+    assert done.returncode == 1
+    assert b"Traceback" not in done.stderr
 
 
 def test_watch_draws_again_on_save_and_stops_quietly(folder: Path) -> None:
-    command = [*COMMAND, "watch", "good.aidl", "-o", "watched.svg"]
-    with subprocess.Popen(command, stderr=subprocess.PIPE, text=True) as process:
-        assert process.stderr is not None
-        try:
-            first = process.stderr.readline()
-            time.sleep(1.0)
-            (folder / "good.aidl").write_text("solid plate { edge = }\n")
-            second = process.stderr.readline()
-            drawn = (folder / "watched.svg").read_bytes()
-            (folder / "good.aidl").write_text("")
-            third = process.stderr.readline()
-        finally:
-            process.send_signal(signal.SIGINT)
-        rest = process.stderr.read()
-    assert "watched.svg: solved" in first
-    assert "error[E0" in second
-    assert "error[E0929]: nothing is drawn, so `watched.svg` is left as it is" in third
-    assert (folder / "watched.svg").read_bytes() == drawn
-    assert "Traceback" not in rest
-    assert process.returncode == 130
-
-
-def test_watch_sees_the_drawings_that_a_program_reads_and_no_others(folder: Path) -> None:
+    """On that of the program, and of a drawing that it reads, and of nothing else."""
     circle = '<svg xmlns="http://www.w3.org/2000/svg"><circle r="{}"/></svg>'
     (folder / "disc.svg").write_text(circle.format(5))
     (folder / "sign.aidl").write_text('import "disc.svg" as disc\nsolid plate { edge = disc() }\n')
@@ -139,26 +118,34 @@ def test_watch_sees_the_drawings_that_a_program_reads_and_no_others(folder: Path
             time.sleep(1.0)
             (folder / "disc.svg").write_text("no drawing")
             second = process.stderr.readline()
+            drawn = (folder / "watched.svg").read_bytes()
+            (folder / "sign.aidl").write_text("")
+            third = next(line for line in process.stderr if "E0929" in line)
         finally:
             process.send_signal(signal.SIGINT)
         rest = process.stderr.read()
     assert "watched.svg: solved" in first
     assert "error[E0362]" in second
-    assert rest == ""
-
-
-def test_an_interrupt_while_parts_are_nested_writes_nothing(folder: Path) -> None:
-    pytest.importorskip("spyrrow")
-    parts = "".join(f"solid p{k} {{ c = rectangle(width: {20 + k}, height: 30) }}\n" for k in range(20))
-    (folder / "many.aidl").write_text(parts)
-    command = [*COMMAND, "compile", "many.aidl", "-o", "many.svg", "--sheet", "200x150", "--nest", "50"]
-    with subprocess.Popen(command, stderr=subprocess.PIPE, text=True) as process:
-        assert process.stderr is not None
-        time.sleep(3.0)
-        process.send_signal(signal.SIGINT)
-        rest = process.stderr.read()
-    assert "many.svg" not in rest
+    assert "error[E0929]: nothing is drawn, so `watched.svg` is left as it is" in third
+    assert (folder / "watched.svg").read_bytes() == drawn
+    assert "Traceback" not in rest
     assert process.returncode == 130
+
+
+def test_an_interrupt_while_parts_are_nested_writes_nothing(
+    aidl: Aidl, folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    spyrrow = pytest.importorskip("spyrrow")
+
+    def begun(**settings: object) -> object:
+        threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT)).start()
+        return made(**settings)
+
+    made = spyrrow.StripPackingConfig
+    monkeypatch.setattr(spyrrow, "StripPackingConfig", begun)
+    parts = "".join(f"solid p{k} {{ c = rectangle(width: {20 + k}, height: 30) }}\n" for k in range(20))
+    nested = aidl("compile", "-", "-o", "many.svg", "--sheet", "200x150", "--nest", "50", stdin=parts)
+    assert nested == Result(130, "", "")
     assert not (folder / "many.svg").exists()
 
 
@@ -188,7 +175,7 @@ def test_a_full_device_is_told(folder: Path, arguments: list[str], is_buffered: 
 @pytest.mark.skipif(not os.path.exists("/dev/full"), reason="there is no device that is always full")
 @pytest.mark.parametrize(
     "arguments",
-    [["compile", "good.aidl", "-o", "made.svg"], ["check", "none.aidl"], ["nonsense"], ["check", "--wrong"]],
+    [["compile", "good.aidl", "-o", "made.svg"], ["check", "none.aidl"], ["nonsense"]],
 )
 def test_a_message_that_is_lost_is_told_by_the_exit_code(folder: Path, arguments: list[str]) -> None:
     with open("/dev/full", "wb") as full:
@@ -208,7 +195,7 @@ def test_a_reader_of_messages_that_goes_away_ends_the_command(folder: Path) -> N
 @pytest.mark.parametrize("closed", [1, 2])
 def test_a_stream_that_is_closed_takes_all(folder: Path, closed: int) -> None:
     done = subprocess.run(
-        ["sh", "-c", f'"$@" {closed}>&-', "sh", *COMMAND, "check", "good.aidl", "--json"],
+        ["sh", "-c", f'"$@" {closed}>&-', "sh", *COMMAND, "explain"],
         capture_output=True,
         text=True,
         check=False,

@@ -15,6 +15,7 @@ def test_a_pdf_beside_the_program(aidl: Aidl, folder: Path):
     assert done.err.startswith("good.pdf: ")
     with pypdfium2.PdfDocument(folder / "good.pdf") as document:
         assert len(document) == 1
+    assert aidl("sheet", "wrong.aidl").code == 1
 
 
 def test_several_formats_on_the_paper_that_is_asked_for(aidl: Aidl, folder: Path):
@@ -35,15 +36,3 @@ def test_a_file_for_each_sheet(aidl: Aidl, folder: Path):
     )
     assert aidl("sheet", "two.aidl", "-o", "two.svg").code == 0
     assert sorted(p.name for p in folder.glob("two*.svg")) == ["two-2.svg", "two-3.svg", "two.svg"]
-
-
-def test_what_is_refused(aidl: Aidl):
-    assert aidl("sheet", "wrong.aidl").code == 1
-    refused = aidl("sheet", "good.aidl", "-o", "x.dxf")
-    assert refused.code == 2
-    assert refused.err.startswith("error[E0905]: there are no sheets of the format `dxf`")
-    tight = aidl("sheet", "good.aidl", "--paper", "a5", "--scale", "50:1")
-    assert tight.code == 2
-    assert "does not fit on A5 paper at 50:1 with its dimensions" in tight.err
-    for wrong in (("--paper", "b4"), ("--scale", "half"), ("--scale", "0:1")):
-        assert aidl("sheet", "good.aidl", *wrong).code == 2

@@ -73,7 +73,7 @@ def test_params_and_dimensions(aidl: Aidl):
     assert "200" not in narrow.out
 
 
-@pytest.mark.parametrize("width", ["1", "2", "300"])
+@pytest.mark.parametrize("width", ["1", "300"])
 @pytest.mark.parametrize("protocol", ["blocks", "braille", "ascii", "sixel"])
 @pytest.mark.parametrize("size", ["width: 1e6, height: 1", "width: 1, height: 1e6"])
 def test_extreme_proportions(aidl: Aidl, folder: Path, width: str, protocol: str, size: str):
@@ -88,8 +88,3 @@ def test_nothing_is_drawn(aidl: Aidl, folder: Path):
     shown = aidl("show", "empty.aidl", "--width", "10")
     assert shown.code == 0
     assert shown.out.strip() == ""
-
-
-def test_a_width_that_cannot_be(aidl: Aidl):
-    for width in ("0", "-3", "x", "1001"):
-        assert aidl("show", "good.aidl", "--width", width).code == 2

@@ -78,21 +78,15 @@ def test_an_imported_outline_is_cut_as_any_other():
 @given(st.floats(-200, 200), st.floats(0.1, 8), st.floats(-50, 50), st.floats(-50, 50))
 def test_its_box_is_that_of_its_curves_wherever_it_is(angle: float, scale: float, x: float, y: float):
     """The box that constraints see, worked out from formulas, is that of the drawing, from its curves."""
-    found = compiled(
+    program = (
         f'import "logo.svg" as logo\ndrawing d {{ a = logo(start: fixed(({x!r}, {y!r})), scale: {scale!r}, '
-        f"angle: {angle!r}deg) let w = a.right - a.left\n assert a.left <= a.right }}"
+        f"angle: {angle!r}deg)\n"
     )
-    assert found.model is not None
+    found = compiled(program + "assert a.left <= a.right }")
     assert found.drawing is not None
-    box = found.drawing.box
-    checks = "".join(
-        f"assert abs(a.{side} - ({value!r})) <= 1e-6\n"
-        for side, value in zip(("left", "bottom", "right", "top"), box, strict=True)
-    )
-    again = compiled(
-        f'import "logo.svg" as logo\ndrawing d {{ a = logo(start: fixed(({x!r}, {y!r})), scale: {scale!r}, '
-        f"angle: {angle!r}deg)\n{checks} }}"
-    )
+    sides = zip(("left", "bottom", "right", "top"), found.drawing.box, strict=True)
+    checks = "".join(f"assert abs(a.{side} - ({value!r})) <= 1e-6\n" for side, value in sides)
+    again = compiled(f"{program}{checks} }}")
     assert again.ok, [d.message for d in again.diagnostics]
 
 

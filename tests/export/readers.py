@@ -106,6 +106,13 @@ def _straight(p: Any, q: Any) -> Curve:
 # --- SVG -----------------------------------------------------------------------------------------
 
 
+def svg_paths(data: bytes) -> list[Any]:
+    """All paths of a document, in mm to three decimals: the reader takes an inch for 1/0.0393701 mm."""
+    from svgelements import SVG, Path
+
+    return list(SVG.parse(io.BytesIO(data), ppi=25.4).elements(lambda e: isinstance(e, Path)))
+
+
 def read_svg(data: bytes) -> dict[str, Body]:
     """Filled paths of bodies, without areas on them, by the path of their structure."""
     bodies: dict[str, Body] = defaultdict(Body)
@@ -147,13 +154,18 @@ def _of_svg(segment: Any) -> Curve:
 # --- DXF -----------------------------------------------------------------------------------------
 
 
+def dxf_of(data: bytes, encoding: str = "utf-8") -> Any:
+    """The document as ezdxf has it."""
+    import ezdxf
+
+    return ezdxf.read(io.StringIO(data.decode(encoding)))
+
+
 def read_dxf(data: bytes) -> dict[str, Body]:
     """Closed polylines, circles and ellipses, and other entities chained by their ends; by the path that each
     carries. Areas of colour in a solid are left out.
     """
-    import ezdxf
-
-    document = ezdxf.read(io.StringIO(data.decode()))
+    document = dxf_of(data)
     assert not document.audit().errors
     bodies: dict[str, Body] = defaultdict(Body)
     chains: dict[str, list[Curve]] = defaultdict(list)

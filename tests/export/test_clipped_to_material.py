@@ -4,19 +4,16 @@ solid they end there. What the files hold is read by other libraries.
 
 from __future__ import annotations
 
-import io
 from collections.abc import Callable
 from functools import cache
 
-import ezdxf
 import pytest
 from shapely import LineString, MultiLineString, Point, box, unary_union
 from shapely.geometry.base import BaseGeometry
-from svgelements import SVG
-from svgelements import Path as SvgPath
 
 from aidl_lang import Model
 from tests.compiled import model
+from tests.export.readers import dxf_of, svg_origin, svg_paths
 
 PITCH = 3
 PROGRAM = """
@@ -60,14 +57,13 @@ def compiled(clip: str) -> Model:
 
 def ink_in_svg(made: Model) -> BaseGeometry:
     """Strokes of the picture, y up; what the picture's frame adds is taken away by the viewBox."""
-    picture = SVG.parse(io.BytesIO(made.export("svg")), ppi=25.4)
-    left, top, *_ = (
-        float(n) for n in made.export("svg").decode().partition('viewBox="')[2].split('"')[0].split()
-    )
+    svg = made.export("svg")
+    left, top = svg_origin(svg)
     return unary_union(
         [
-            LineString([(p.x + left, -p.y - top) for p in (line.start, line.end)])
-            for path in picture.elements(lambda e: isinstance(e, SvgPath) and e.fill.value is None)
+            LineString([(p.x - left, -p.y - top) for p in (line.start, line.end)])
+            for path in svg_paths(svg)
+            if path.fill.value is None
             for line in path
             if type(line).__name__ == "Line"
         ]
@@ -75,7 +71,7 @@ def ink_in_svg(made: Model) -> BaseGeometry:
 
 
 def ink_in_dxf(made: Model) -> BaseGeometry:
-    space = ezdxf.read(io.StringIO(made.export("dxf").decode())).modelspace()
+    space = dxf_of(made.export("dxf")).modelspace()
     return unary_union(
         [
             LineString([tuple(e.dxf.start)[:2], tuple(e.dxf.end)[:2]])

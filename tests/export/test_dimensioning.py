@@ -10,7 +10,7 @@ import shapely
 
 from aidl_lang import pipeline
 from aidl_lang.common.source import SourceFile
-from aidl_lang.export.job import ExportError, Options
+from aidl_lang.export.job import Options
 from aidl_lang.export.marks import Area, Curves, Group, Picture, Text
 from aidl_lang.export.picture import picture
 from aidl_lang.geometry.curves import Arc, Line
@@ -145,12 +145,6 @@ def test_values_can_be_read(name: str):
     check(p)
 
 
-def test_cut_files_have_no_dimensions():
-    with pytest.raises(ExportError) as caught:
-        pipeline.compile(SourceFile("a.aidl", PLATE)).export(".svg", Options(dimension=True, cut=True))
-    assert caught.value.diagnostic.code == "E0924"
-
-
 def test_programs_can_tell_what_is_dimensioned():
     svg = pipeline.compile(SourceFile("a.aidl", PLATE)).export(".svg", Options(dimension=True))
     groups = [g.attrib for g in ElementTree.fromstring(svg).iter() if g.get("class") == "dimension"]
@@ -177,14 +171,14 @@ def test_short_lengths_stand_nearer_than_long_ones():
 
 def test_too_many_are_counted():
     rims = "\n".join(
-        f"hole h{i} {{ rim = circle(center: fixed(({4 * i - 100}, 0)), radius: {1 + i / 100}) }}"
-        for i in range(51)
+        f"hole h{i} {{ rim = circle(center: fixed(({5 * i - 105}, 0)), radius: {1 + i / 100}) }}"
+        for i in range(43)
     )
     p = drawn(f"solid s {{ body = rectangle(center: origin, width: 220, height: 60)\n{rims} }}")
     check(p)
     (note,) = [
         m.text for g in p.groups if g.name == "dimensions-left-out" for m in g.marks if isinstance(m, Text)
     ]
-    assert note == f"{53 - len(dimensions(p))} more dimensions not shown"
+    assert note == f"{45 - len(dimensions(p))} more dimensions not shown"
     assert len(dimensions(p)) <= 40
     assert {"220", "60"} <= {value_of(g).text for g in dimensions(p)}

@@ -4,14 +4,12 @@ closed polylines of lines and arcs near the curves, in order, in old words too.
 
 from __future__ import annotations
 
-import io
 import json
 import math
 from collections import Counter
 from itertools import pairwise
 from typing import Any
 
-import ezdxf
 import numpy as np
 import pytest
 import shapely
@@ -26,12 +24,12 @@ from aidl_lang.geometry.solved import SolvedStructure
 from tests.compiled import compiled
 from tests.documents import ROOT
 from tests.export.making import written
-from tests.export.readers import read_dxf
+from tests.export.readers import dxf_of, read_dxf
 from tests.geometry.models import arc, circle, compound, primitive, rectangle, structure
 
 
-def read(data: bytes, encoding: str = "utf-8") -> Document:
-    found = ezdxf.read(io.StringIO(data.decode(encoding)))
+def read(data: bytes) -> Document:
+    found = dxf_of(data)
     auditor = found.audit()
     assert not auditor.errors
     assert not auditor.fixes
@@ -56,16 +54,6 @@ def only(document: Document, kind: str) -> Any:
 
 
 # --- Forms -----------------------------------------------------------------------------------------
-
-
-def test_a_circle_and_a_hole():
-    document = document_of(
-        structure("solid", "s", circle("c", 3, 4, 10), structure("hole", "h", circle("c", 3, 4, 2)))
-    )
-    first, second = document.modelspace()
-    assert (first.dxftype(), first.dxf.layer, first.dxf.radius) == ("CIRCLE", "hole", 2)
-    assert (second.dxftype(), second.dxf.layer, second.dxf.radius) == ("CIRCLE", "solid", 10)
-    assert second.dxf.center == (3, 4, 0)
 
 
 @pytest.mark.parametrize("turn", [1e-4, 0.01, 1, 90, 179, 181, 200, 270, 350, 359, 359.9, 359.999])
@@ -235,11 +223,11 @@ SIGN = """@thickness(3mm)
 @detached
 solid sign {
     plate = rounded_rectangle(center: origin, width: 200, height: 60, radius: 10)
-    hole word { letters = text("ROBERTA & 8 Bo", height: 14) }
+    hole word { letters = text("Rb&8", height: 14) }
     hole left { rim = ellipse(center: fixed((-92, 0)), rx: 2, ry: 3) }
     drawing frame {
         e = ellipse(rx: 84, ry: 25)
-        s = text("since 1987", height: 6)
+        s = text("ie98", height: 6)
     }
     constrain {
         word.letters.center == plate.center + (0, 6)
@@ -293,8 +281,8 @@ def ring(entity: Any, sagitta: float = 1e-3) -> np.ndarray[Any, Any]:
 def test_the_sign_is_engraved_by_closed_polylines_too() -> None:
     engraved = [e for e in document("sign").modelspace() if e.dxf.layer == "drawing"]
     assert all(e.dxftype() == "LWPOLYLINE" and e.closed for e in engraved)
-    # since 1987: dotted i, e with an eye, 9 and twice two loops in 8; and the frame.
-    assert len(engraved) == 9 + 1 + 1 + 1 + 2 + 1
+    # Dotted i, e and 9 with an eye, two of them in 8; and the frame.
+    assert len(engraved) == 4 + 1 + 1 + 1 + 2 + 1
 
 
 @pytest.mark.parametrize("name", OWN)
@@ -378,7 +366,7 @@ OLD = """assembly a {
 def test_r12(capfd: pytest.CaptureFixture[str]) -> None:
     made = written(OLD, ".dxf", dxf="r12")
     assert capfd.readouterr() == ("", "")
-    found = ezdxf.read(io.StringIO(made.data.decode("cp1252")))
+    found = dxf_of(made.data, "cp1252")
     assert found.acad_release == "R12"
     stroke, body = found.modelspace()
     assert [e.dxftype() for e in (stroke, body)] == ["POLYLINE", "POLYLINE"]

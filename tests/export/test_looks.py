@@ -6,7 +6,6 @@ import io
 import re
 from functools import cache
 
-import ezdxf
 import pytest
 from ezdxf.document import Drawing as Document
 from PIL import Image
@@ -16,8 +15,8 @@ from aidl_lang.export import FORMATS
 from aidl_lang.export.job import Exported
 from aidl_lang.export.marks import LIGHT, OUTLINE
 from aidl_lang.export.profiles import PROFILES
-from tests.compiled import compiled
 from tests.export.making import near, written
+from tests.export.readers import dxf_of
 
 PROGRAM = """
 param thin = 0.23mm
@@ -57,7 +56,7 @@ def test_dashes_that_no_pixel_shows_are_a_paler_line(length: float) -> None:
 
 
 def document(**options: object) -> Document:
-    return ezdxf.read(io.StringIO(written(PROGRAM, ".dxf", **options).data.decode()))
+    return dxf_of(written(PROGRAM, ".dxf", **options).data)
 
 
 def test_dxf_has_the_nearest_weight_and_a_linetype_for_each_pattern() -> None:
@@ -94,7 +93,7 @@ def test_a_geometry_has_its_own_colour_in_a_dxf() -> None:
         @color("blue") b = line((5, 0), (9, 0))
     }
     """
-    made = ezdxf.read(io.StringIO(written(program, ".dxf").data.decode()))
+    made = dxf_of(written(program, ".dxf").data)
     assert [e.rgb for e in made.modelspace()] == [(255, 0, 0), (0, 0, 255)]
 
 
@@ -117,15 +116,9 @@ assembly a {
 def test_contours_are_cut_without_an_outline_too() -> None:
     for options in ({"cut": True}, {"theme": "cutter"}):
         assert 'stroke-width="0.1"' in group(written(BALL, ".svg", **options).data.decode(), "a.shine:outer")
-    made = written(BALL, ".dxf")
-    entities = list(ezdxf.read(io.StringIO(made.data.decode())).modelspace())
+    entities = list(dxf_of(written(BALL, ".dxf").data).modelspace())
     assert sorted(e.dxftype() for e in entities) == ["CIRCLE", "CIRCLE", "LINE"]
     assert sorted(e.dxf.lineweight for e in entities) == [-1, -1, 40]
-    (note,) = made.notes
-    assert note.message == (
-        "`@opacity` and `@stroke(none)` count for nothing in this file: "
-        "DXF holds outlines, and nothing is filled"
-    )
 
 
 def test_outlines_are_a_darker_tone_of_the_fill() -> None:
@@ -159,22 +152,6 @@ def test_a_part_more_at_the_end_changes_no_other_part() -> None:
 
 # --- Seams -----------------------------------------------------------------------------------------
 
-TURRET = """
-@color("#c86428") @edges(seams)
-solid a {
-    shaft = rectangle(center: fixed((0, 0)), width: 20, height: 40)
-    collar = rectangle(center: fixed((0, 20)), width: 30, height: 10)
-    hole slit { gap = rectangle(center: fixed((0, 15)), width: 10, height: 4) }
-    solid knob { rim = rectangle(center: fixed((10, 0)), width: 6, height: 6) }
-}
-"""
-
-
-@pytest.mark.parametrize("suffix", [".dxf", ".stl", ".step", ".3mf"])
-def test_seams_are_told_where_they_have_no_place(suffix: str) -> None:
-    (note,) = [n for n in written("@thickness(2)" + TURRET, suffix).notes if n.code == "N0741"]
-    assert note.message.startswith("`@edges` counts for nothing in this file: ")
-
 
 def test_a_solid_with_a_look_in_a_solid_is_an_area_and_has_no_seams() -> None:
     def svg(looks: str) -> str:
@@ -185,38 +162,6 @@ def test_a_solid_with_a_look_in_a_solid_is_an_area_and_has_no_seams() -> None:
     assert 'class="seam"' in svg("")
     assert 'class="seam"' not in svg('@color("gold")')
     assert svg('@color("gold") @stroke(none)').count('stroke="none"') == 1
-
-
-# --- What has no place -----------------------------------------------------------------------------
-
-
-CUTS = "a cutter follows whole lines of one width, and fills nothing"
-TOLD: list[tuple[str, dict[str, object], str]] = [
-    (".dxf", {}, "`@opacity` counts for nothing in this file: DXF holds outlines, and nothing is filled"),
-    (".dxf", {"kerf": 0.1}, f"`@stroke`, `@dash` and `@opacity` count for nothing in this file: {CUTS}"),
-    (".svg", {"cut": True}, f"`@stroke`, `@dash` and `@opacity` count for nothing in this file: {CUTS}"),
-    (".stl", {}, "`@stroke`, `@dash` and `@opacity` count for nothing in this file: STL holds bare shapes"),
-    (
-        ".3mf",
-        {},
-        "`@stroke` and `@dash` count for nothing in this file: "
-        "3MF holds solids with their colours, and draws nothing on them",
-    ),
-]
-
-
-@pytest.mark.parametrize(("suffix", "options", "said"), TOLD)
-def test_what_a_file_cannot_hold_is_told_once(suffix: str, options: dict[str, object], said: str) -> None:
-    (note,) = [note for note in written(PROGRAM, suffix, **options).notes if note.code == "N0741"]
-    assert note.message == said
-    assert note.span is not None
-    assert note.span.text.startswith("@color")
-    assert note.hints == ("pictures (.svg, .png, .pdf) are drawn so",)
-
-
-@pytest.mark.parametrize("suffix", [".svg", ".png", ".pdf", ".json"])
-def test_pictures_hold_it_all(suffix: str) -> None:
-    assert written(PROGRAM, suffix).notes == ()
 
 
 def test_the_pdf_is_named_after_what_the_program_says_it_is() -> None:
@@ -465,13 +410,6 @@ def test_a_colour_of_its_own_does_not_go_over_into_another(shade: str, is_shaded
     assert (b'fill="gold"' in written(text, ".svg").data) != is_shaded
 
 
-@pytest.mark.parametrize("arguments", ["", "3", '"nocolour"', "round, 3mm", "round, 1, 2"])
-def test_a_shade_that_is_none_is_told(arguments: str) -> None:
-    made = compiled(f"@shade({arguments}) solid s {{ p = circle(radius: 3) }}")
-    (found,) = [d for d in made.diagnostics if d.code == "E0517"]
-    assert found.message.startswith("`@shade` takes `round`, `ball`, `slope`, `fade`, `none`, or a colour")
-
-
 INSCRIBED = """
 assembly a {
     @color("navy") solid dark {
@@ -532,14 +470,3 @@ def test_it_is_in_the_file_or_told(said: str, name: str) -> None:
         assert ("N0756" in told) == (name.endswith(".dxf") or name.startswith("cutter"))
     else:
         assert is_there or "N0741" in told
-
-
-def test_the_colour_of_an_area_with_an_outline_of_its_own_is_told_too() -> None:
-    text = """
-    @color("blue") @thickness(2mm) solid s {
-        body = rectangle(center: fixed((0, 0)), width: 40, height: 20)
-        @color("gold") @stroke(1mm) disc = circle(center: fixed((5, 0)), radius: 4)
-    }
-    """
-    (note,) = [n for n in written(text, ".3mf").notes if n.code == "N0741"]
-    assert note.message.startswith("`@stroke` and `@color(…)` count for nothing in this file")

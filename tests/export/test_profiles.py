@@ -2,21 +2,19 @@
 
 from __future__ import annotations
 
-import io
 import re
+from typing import Any
 
-import ezdxf
 import pytest
 from ezdxf.colors import int2rgb
 from ezdxf.document import Drawing as Document
 from shapely import Polygon, unary_union
-from svgelements import SVG
-from svgelements import Path as SvgPath
 
-from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.export.job import ExportError
 from aidl_lang.export.profiles import OPERATIONS, PROFILES, Profile, parsed
+from tests.export import readers
 from tests.export.making import written
+from tests.export.readers import dxf_of
 
 PLATE = """\
 assembly tag {
@@ -35,9 +33,8 @@ assembly tag {
 """
 
 
-def svg_paths(text: str, profile: Profile, **options: object) -> list[SvgPath]:
-    svg = SVG.parse(io.BytesIO(written(text, ".svg", profile=profile, **options).data), ppi=25.4)
-    return list(svg.elements(lambda e: isinstance(e, SvgPath)))
+def svg_paths(text: str, profile: Profile, **options: object) -> list[Any]:
+    return readers.svg_paths(written(text, ".svg", profile=profile, **options).data)
 
 
 def in_svg(text: str, profile: Profile) -> list[tuple[str, str, bool]]:
@@ -53,7 +50,7 @@ def in_svg(text: str, profile: Profile) -> list[tuple[str, str, bool]]:
 
 def document(text: str, profile: Profile, **options: str) -> Document:
     data = written(text, ".dxf", profile=profile, **options).data
-    found = ezdxf.read(io.StringIO(data.decode("cp1252" if options else "utf-8")))
+    found: Document = dxf_of(data, "cp1252" if options else "utf-8")
     assert not found.audit().errors
     return found
 
@@ -150,96 +147,13 @@ def test_a_file_of_ones_own() -> None:
     assert written(text, ".svg", profile=profile).notes == ()
 
 
-WRONG = {
-    f"x = {'[' * 5000}": ("its values are nested too deeply", ()),
-    "x": ("it is not TOML: Expected '=' after a key in a key/value pair (at end of document)", ()),
-    "colour = 3": (
-        "there is no key `colour`",
-        ("there are `base`, `order`, `letters`, `layers`, `fill`, `engrave`, `score`, `inner` and `outer`",),
-    ),
-    "oter = {}": ("there is no key `oter`", ("did you mean `outer`?",)),
-    "[outer]\ncolr = 'red'": ("there is no key `outer.colr`", ("did you mean `color`?",)),
-    "outer = 3": ("`outer` is a table, not `3`", ()),
-    "[outer]\ncolor = 'redd'": ('`outer.color` is a colour such as "#ff0000" or "red", not `"redd"`', ()),
-    "[outer]\nwidth = 0": ("`outer.width` is millimetres from 0.001 to 5, not `0`", ()),
-    "[outer]\nwidth = true": ("`outer.width` is millimetres from 0.001 to 5, not `True`", ()),
-    "[outer]\nwidth = nan": ("`outer.width` is millimetres from 0.001 to 5, not `nan`", ()),
-    "[outer]\nlayer = ''": ('`outer.layer` is a name of 1 to 255 letters, not `""`', ()),
-    "base = 'lightbrun'": (
-        '`base` is `plain`, `lightburn`, `glowforge` or `ponoko`, not `"lightbrun"`',
-        ("did you mean `lightburn`?",),
-    ),
-    "base = []": ("`base` is `plain`, `lightburn`, `glowforge` or `ponoko`, not `[]`", ()),
-    "letters = 'cut'": ('`letters` is `fill` or `engrave`, not `"cut"`', ()),
-    "order = ['outer']": (
-        "`order` names each operation once, not `['outer']`",
-        ("the usual one is `fill`, `engrave`, `score`, `inner` and `outer`",),
-    ),
-    "layers = 'x'": ('`layers` is a table, not `"x"`', ()),
-    "[layers]\nx = 3": ("`layers.x` is the name of an operation, or a table, not `3`", ()),
-    "[layers]\nx = 'engrav'": (
-        '`layers.x` is `fill`, `engrave`, `score`, `inner`, `outer` or `cut`, not `"engrav"`',
-        ("did you mean `engrave`?",),
-    ),
-    "[layers]\nx = {color = 'red'}": (
-        "`layers.x` does not say what is done with it",
-        ('say it: `as = "score"`',),
-    ),
-    "[layers]\nx = {as = 'score', colr = 'red'}": (
-        "there is no key `layers.x.colr`",
-        ("did you mean `color`?",),
-    ),
-}
+def test_a_file_that_is_nested_too_deeply_is_told() -> None:
+    with pytest.raises(ExportError, match=r"`shop.toml` cannot be used: its values are nested too deeply"):
+        parsed(f"x = {'[' * 5000}", "shop.toml")
 
 
-@pytest.mark.parametrize("text", WRONG)
-def test_a_wrong_file_is_told(text: str) -> None:
-    what, hints = WRONG[text]
-    with pytest.raises(ExportError) as caught:
-        parsed(text, "shop.toml")
-    found = caught.value.diagnostic
-    assert (found.code, found.message, found.hints) == (
-        "E0957",
-        f"the profile `shop.toml` cannot be used: {what}",
-        hints,
-    )
-
-
-# --- What is told --------------------------------------------------------------------------------
-
-
-def notes(text: str, **options: object) -> list[Diagnostic]:
-    return list(written(text, ".svg", **options).notes)
-
-
-def test_layers_that_the_profile_does_not_know() -> None:
-    text = PLATE.replace('@layer("score")', '@layer("ritzen")').replace(
-        "hole bore", '@layer("glue") hole bore'
-    )
-    (note,) = notes(text, profile=PROFILES["lightburn"])
-    assert (note.code, note.message) == (
-        "N0754",
-        "the profile `lightburn` does not say what is done on the layers `glue` and `ritzen`: "
-        "parts are cut there and drawings engraved as elsewhere",
-    )
-    assert note.span is not None
-    assert note.span.line == 4
-    assert note.hints == ('say it in a file for `--profile`: `[layers]` with `"glue" = "score"`',)
-    assert notes(text, cut=True) == []
-    assert notes(text, profile=PROFILES["plain"]) == []
-
-
-def test_lines_that_enclose_no_area() -> None:
+def test_lines_that_enclose_no_area_are_engraved() -> None:
     text = PLATE.replace('@layer("score")', '@layer("fill")')
-    (note,) = notes(text, cut=True)
-    assert (note.code, note.message) == (
-        "W0757",
-        "lines of `tag.plate.fold` enclose nothing, so there they are engraved as lines and not as areas",
-    )
-    assert note.hints == (
-        "close them: end each where the next one begins",
-        "or put them on a layer for lines",
-    )
     assert [operation for operation, *_ in in_svg(text, PROFILES["ponoko"])].count("engrave") == 2
 
 

@@ -25,12 +25,13 @@ import aidl_lang
 from aidl_lang import Model
 from aidl_lang.export.job import Options
 from tests import compiled
-from tests.amount import TRIES_ALL, some
+from tests.amount import TRIES_ALL
 from tests.documents import ROOT
 from tests.export import readers
 from tests.export.readers import read_meshes
 
-EXAMPLES = some([path.stem for path in compiled.EXAMPLES], 2)
+ALL = [path.stem for path in compiled.EXAMPLES]
+EXAMPLES = ALL if TRIES_ALL else [name for name in ALL if name not in compiled.DEAR][::3]
 
 
 @cache
@@ -170,17 +171,17 @@ def thickness_of(model: Model, path: str) -> float:
 
 def test_nothing_of_the_examples_is_lost():
     """What has bodies in the JSON is what the tests above have looked at."""
-    assert len(EXAMPLES) >= (13 if TRIES_ALL else 7)
+    assert len(EXAMPLES) >= (13 if TRIES_ALL else 5)
     assert all(bodies_of(name) for name in EXAMPLES)
 
 
 KEY = ROOT / "examples" / "key.aidl"
-BEGINNINGS = {".svg": b"<?xml", ".dxf": b"  0\nSECTION", ".pdf": b"%PDF", ".json": b"{"}
+BEGINNINGS = {".svg": b"<?xml", ".dxf": b"  0\nSECTION", ".pdf": b"%PDF", ".json": b"{", ".step": b"ISO"}
 SCRIPT = """
 import pathlib, sys, aidl_lang
 key = aidl_lang.compile(pathlib.Path(sys.argv[1]))
 for suffix in sys.argv[2:]:
-    pathlib.Path("key" + suffix).write_bytes(key.export(suffix))
+    pathlib.Path("key" + suffix).write_bytes(key.export(suffix, thickness=2))
 """
 
 
@@ -189,10 +190,11 @@ def test_the_same_bytes_in_every_process(tmp_path: Path) -> None:
     for seed in "1234" if TRIES_ALL else "1":
         environment = os.environ | {"PYTHONHASHSEED": seed, "PYTHONPATH": str(ROOT)}
         words = [sys.executable, "-c", SCRIPT, str(KEY), *BEGINNINGS]
-        subprocess.run(words, cwd=tmp_path, env=environment, check=True)
+        done = subprocess.run(words, cwd=tmp_path, env=environment, check=True, capture_output=True)
+        assert (done.stdout, done.stderr) == (b"", b"")  # Open CASCADE would have much to say
         for suffix, beginning in BEGINNINGS.items():
             data = (tmp_path / f"key{suffix}").read_bytes()
-            assert data == here.export(suffix), suffix
+            assert data == here.export(suffix, thickness=2), suffix
             assert data.startswith(beginning)
             assert str(ROOT).encode() not in data
     assert not ezdxf.options.write_fixed_meta_data_for_testing

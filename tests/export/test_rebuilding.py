@@ -61,11 +61,11 @@ class Part:
                 self.is_partial = True
                 self.filed += pieces
             elif isinstance(pieces[0], Circle):
-                self.circle(pieces[0])
+                self.round(pieces[0], True)
             else:
                 self.outline(joined(pieces))
         for circle in circles:
-            self.circle(circle)
+            self.round(circle, True)
         self.has_more = has_more or self.is_partial
         """something is drawn that is as in the file"""
         self.known: set[int] = set()
@@ -135,9 +135,6 @@ class Part:
             for axis in (0, 1):
                 self.levels[axis].append(center[axis])
         return center, radius
-
-    def circle(self, curve: Circle) -> None:
-        self.round(curve, True)
 
     def outline(self, pieces: list[Piece]) -> None:
         count = len(pieces)

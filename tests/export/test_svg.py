@@ -159,7 +159,7 @@ def test_every_picture_has_every_theme(suffix: str) -> None:
 
 SCRIPT = """
 import sys
-from aidl_lang.export.svg import svgwrite
+from aidl_lang.export.svg import _loaded_later, svgwrite
 
 svg = svgwrite()
 assert svg is sys.modules["svgwrite"] is svgwrite()
@@ -170,34 +170,19 @@ assert checker.check("path-data", "M 0 0 L 1 1")
 assert not checker.check("path-data", "no path")
 assert "svgwrite.data.svgparser" in sys.modules
 
-from urllib.request import Request
-
-assert Request("http://localhost").host == "localhost"
-try:
-    svg.container.urlopen("none:")
-except OSError as reason:
-    assert "none" in str(reason)
-else:
-    raise AssertionError("an address that is none was opened")
-"""
-
-MEANWHILE = """
-import sys
-from aidl_lang.export.svg import _loaded_later
-
 with _loaded_later("urllib.request", "urlopen"):
     from urllib.request import Request, urlopen  # as another thread does meanwhile
 assert sys.modules["urllib.request"].Request is Request
-assert Request.__module__ == "urllib.request"
-try:
-    urlopen("none:")
-except OSError as reason:
-    assert "none" in str(reason)
-else:
-    raise AssertionError("an address that is none was opened")
+assert Request("http://localhost").host == "localhost"
+for opens in (svg.container.urlopen, urlopen):
+    try:
+        opens("none:")
+    except OSError as reason:
+        assert "none" in str(reason)
+    else:
+        raise AssertionError("an address that is none was opened")
 """
 
 
-@pytest.mark.parametrize("script", [SCRIPT, MEANWHILE])
-def test_what_is_loaded_later_is_the_real_thing(script: str) -> None:
-    subprocess.run([sys.executable, "-c", script], check=True, timeout=60)
+def test_what_is_loaded_later_is_the_real_thing() -> None:
+    subprocess.run([sys.executable, "-c", SCRIPT], check=True, timeout=60)

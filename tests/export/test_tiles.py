@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import io
-import math
 import re
 from itertools import pairwise
 from xml.etree import ElementTree
@@ -18,8 +17,8 @@ from aidl_lang.export.picture import tiled
 from aidl_lang.geometry.curves import Circle, Line, Vec
 from aidl_lang.geometry.region import Face, Loop
 from tests.amount import tries
-from tests.export.making import refused, written
-from tests.geometry.models import circle, polygon, rectangle, structure
+from tests.export.making import written
+from tests.geometry.models import circle, polygon, structure
 
 INK = Ink("#000000", 0.1)
 A4 = (210.0, 297.0)
@@ -132,29 +131,3 @@ def test_svg_pages_are_true_to_scale_and_clipped():
         assert data.count(b'clip-path="url(#' + clip + b')"') == data.count(b"data-path") > 0
         rect = root.find(".//{*}clipPath/{*}rect")
         assert (float(rect.attrib["width"]), float(rect.attrib["height"])) == (192, 279)
-
-
-@pytest.mark.parametrize(
-    ("options", "message", "hint"),
-    [
-        (
-            {"tile": (99.0, 200.0)},
-            "a page of 99 × 200 mm is too small for tiles",
-            "each side must have 100 mm at least",
-        ),
-        (
-            {"tile": (100.0, 200.0), "overlap": 41.0},
-            "an overlap of 41 mm is more than half of what a page of 100 × 200 mm shows",
-            "give a smaller `--overlap` or a larger `--tile`",
-        ),
-    ],
-)
-def test_pages_that_are_too_small(options: dict[str, object], message: str, hint: str):
-    assert refused(PLATE, ".svg", **options) == ("E0924", message, hint)
-
-
-def test_too_many_pages():
-    field = structure("solid", "field", rectangle("r", 0, 0, 1e7, 1e7))
-    columns, rows = math.ceil((1e7 - 10) / 180), math.ceil((1e7 - 10) / 267)
-    message = f"{columns * rows} pages are more than 500"
-    assert refused(field, ".svg", tile=A4)[:2] == ("E0924", message)

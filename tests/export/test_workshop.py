@@ -11,21 +11,19 @@ import re
 from functools import cache
 from typing import Any
 
-import ezdxf
 import numpy as np
 import pypdfium2
 import pytest
 from shapely.geometry import MultiPolygon, Polygon
 from shapely.geometry.base import BaseGeometry
-from svgelements import SVG
-from svgelements import Path as SvgPath
 
 from aidl_lang import Model
+from aidl_lang.export import Exporter
 from aidl_lang.export.job import Options
 from aidl_lang.export.profiles import PROFILES
 from tests.compiled import model
 from tests.documents import ROOT
-from tests.export.readers import Loop, read_dxf, read_meshes, united
+from tests.export.readers import Body, Loop, dxf_of, read_dxf, read_meshes, svg_paths, united
 from tests.export.test_dxf import is_closed, ring
 
 WORKSHOP = ROOT / "examples" / "workshop"
@@ -40,10 +38,6 @@ def sign(text: str = TEXT) -> Model:
     return found
 
 
-def svg_paths(data: bytes) -> list[SvgPath]:
-    return list(SVG.parse(io.BytesIO(data), ppi=25.4).elements(lambda e: isinstance(e, SvgPath)))
-
-
 def size_on_paper(data: bytes) -> list[float]:
     with pypdfium2.PdfDocument(data) as made:
         assert len(made) == 1
@@ -53,7 +47,7 @@ def size_on_paper(data: bytes) -> list[float]:
 def left_over(made: Model) -> BaseGeometry:
     """What is left of the plate, read off the DXF with arcs in chords of a micrometre."""
     rest: BaseGeometry = Polygon()
-    for entity in ezdxf.read(io.StringIO(made.export("dxf").decode())).modelspace():
+    for entity in dxf_of(made.export("dxf")).modelspace():
         if entity.dxf.layer in ("solid", "hole"):
             assert is_closed(entity)
             rest = rest.symmetric_difference(Polygon(ring(entity, 1e-3)))
@@ -81,8 +75,8 @@ def test_without_bridges_pieces_fall_out_and_are_told() -> None:
 def test_engraving_comes_before_the_cuts() -> None:
     """In every file that a cutter follows; the line under the name is followed and not filled."""
     options = Options(profile=PROFILES["lightburn"])
-    dxf = sign()._compiled.exported(".dxf", options).data.decode()
-    layers = list(dict.fromkeys(e.dxf.layer for e in ezdxf.read(io.StringIO(dxf)).modelspace()))
+    dxf = sign()._compiled.exported(".dxf", options).data
+    layers = list(dict.fromkeys(e.dxf.layer for e in dxf_of(dxf).modelspace()))
     assert [layer.rpartition("-")[2] for layer in layers] == ["engrave", "inner", "outer"]
     svg = sign()._compiled.exported(".svg", options).data
     operations = [p.values["data-operation"] for p in svg_paths(svg)]
@@ -113,10 +107,15 @@ def case() -> Model:
     return found
 
 
-def sheet(suffix: str, **options: Any) -> bytes:
-    made = case()._compiled.exported(
-        suffix, Options(sheet=SHEET, kerf=KERF, profile=PROFILES["lightburn"], **options)
-    )
+@cache
+def cutting() -> Exporter:
+    """What works out once for all formats how its parts are cut."""
+    return case()._compiled.exporting(Options(sheet=SHEET, kerf=KERF, profile=PROFILES["lightburn"]))
+
+
+@cache
+def sheet(suffix: str) -> bytes:
+    made = cutting()(suffix)
     assert made.notes == ()
     assert made.further == ()
     return made.data
@@ -143,11 +142,8 @@ def test_the_cut_list_adds_up() -> None:
     text = sheet(".csv").decode("utf-8-sig")
     parts, sheets = (list(csv.DictReader(io.StringIO(part))) for part in text.split("\r\n\r\n"))
     assert [part["part"] for part in parts] == list(PANELS)
-    told = {
-        name.rpartition(".")[2]: body for name, body in read_dxf(case().export("dxf", dxf="splines")).items()
-    }
     for part in parts:
-        body = told[part["part"]]
+        body = drawn()[part["part"]]
         assert float(part["area_mm2"]) == pytest.approx(body.area, abs=0.01)
         assert float(part["cut_mm"]) == pytest.approx(body.perimeter, abs=0.01)
         x0, y0, x1, y1 = body.box
@@ -155,6 +151,13 @@ def test_the_cut_list_adds_up() -> None:
             (x1 - x0, y1 - y0), abs=0.001
         )
     assert float(sheets[0]["cut_mm"]) == pytest.approx(sum(float(part["cut_mm"]) for part in parts), abs=0.01)
+
+
+@cache
+def drawn() -> dict[str, Body]:
+    """The panels by name."""
+    found = read_dxf(case().export("dxf", dxf="splines"))
+    return {path.rpartition(".")[2]: body for path, body in found.items()}
 
 
 def panels(suffix: str) -> dict[str, bytes]:
@@ -197,31 +200,22 @@ def test_the_panels_make_a_closed_case(suffix: str) -> None:
     assert together.volume == pytest.approx(total, abs=0.05)
     assert together.bounds == pytest.approx(np.array([[0, 0, 0], [LENGTH, DEPTH, HEIGHT]]), abs=1e-3)
     hollow = (LENGTH - 2 * _T) * (DEPTH - 2 * _T) * (HEIGHT - 2 * _T)
-    openings = sum(
-        abs(loop.area)
-        for body in read_dxf(case().export("dxf", dxf="splines")).items()
-        for loop in _inner(body)
-    )
+    openings = sum(abs(loop.area) for panel in drawn() for loop in _inner(panel))
     assert total == pytest.approx(LENGTH * DEPTH * HEIGHT - hollow - _T * openings, rel=1e-4)
 
 
-def _inner(named: tuple[str, Any]) -> list[Loop]:
-    name, body = named
-    if name.endswith("label"):
+def _inner(panel: str) -> list[Loop]:
+    if panel == "label":
         return []
-    return sorted(body.loops, key=lambda loop: -abs(loop.area))[1:]
+    return sorted(drawn()[panel].loops, key=lambda loop: -abs(loop.area))[1:]
 
 
 def test_the_openings_lie_where_the_plugs_of_the_board_are() -> None:
     """Places of the plugs from the corner of the board, mm, and the board 2 mm from the panels beside it."""
-    drawn = read_dxf(case().export("dxf"))
 
     def middles(panel: str) -> list[tuple[float, float]]:
-        body = drawn[f"pi_case.{panel}"]
-        left, bottom, _, _ = body.box
-        boxes = [
-            (loop.polygon(64).min(axis=0), loop.polygon(64).max(axis=0)) for loop in _inner((panel, body))
-        ]
+        left, bottom, _, _ = drawn()[panel].box
+        boxes = [(loop.polygon(64).min(axis=0), loop.polygon(64).max(axis=0)) for loop in _inner(panel)]
         return sorted((float(a[0] + b[0]) / 2 - left, float(a[1] + b[1]) / 2 - bottom) for a, b in boxes)
 
     board = THICKNESS + 2

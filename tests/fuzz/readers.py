@@ -135,23 +135,17 @@ def _session() -> bytes:
     here = {**named, "position": {"line": 1, "character": 12}}
     start = {"line": 1, "character": 4}
     edit = {"range": {"start": start, "end": {"line": 1, "character": 7}}, "text": "edge"}
+    opened = {"textDocument": {"uri": _URI, "languageId": "aidl", "version": 1, "text": _TEXT}}
+    changed = {"textDocument": {"uri": _URI, "version": 2}, "contentChanges": [edit]}
     sent: list[tuple[str, Any, bool]] = [
         ("initialize", {"processId": None, "rootUri": None, "capabilities": {}}, True),
         ("initialized", {}, False),
-        (
-            "textDocument/didOpen",
-            {"textDocument": {"uri": _URI, "languageId": "aidl", "version": 1, "text": _TEXT}},
-            False,
-        ),
+        ("textDocument/didOpen", opened, False),
         ("textDocument/hover", here, True),
         ("textDocument/completion", here, True),
         ("textDocument/semanticTokens/full", named, True),
         ("textDocument/documentSymbol", named, True),
-        (
-            "textDocument/didChange",
-            {"textDocument": {"uri": _URI, "version": 2}, "contentChanges": [edit]},
-            False,
-        ),
+        ("textDocument/didChange", changed, False),
         ("textDocument/rename", {**here, "newName": "b"}, True),
         ("textDocument/codeAction", {**named, "range": edit["range"], "context": {"diagnostics": []}}, True),
         ("textDocument/formatting", {**named, "options": {"tabSize": 4, "insertSpaces": True}}, True),

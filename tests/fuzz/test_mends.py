@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from aidl_lang.common.source import SourceFile
 from tests.amount import tried
-from tests.fuzz.mends import constraining, finding, program
+from tests.fuzz.mends import finding, program
 from tests.fuzz.sources import seeds
 
 _EACH = 20
@@ -19,18 +18,3 @@ def test_mending_makes_nothing_worse(first: int) -> None:
         text = program(seed, seeds())
         found = finding(text)
         assert found is None, f"seed {seed}: {found.kind}\n{text}\n=== {found.details}"
-
-
-def test_what_constrains_is_counted() -> None:
-    text = """\
-drawing d {
-    a = circle(radius: 3)
-    b = circle(center: (9, 0), radius: guess(2))
-    tangent(a, b)
-    constrain { a.left == 0; b.nonsense(a) }
-    prefer b.radius == 4
-    assert a.radius == 3
-    show(a)
-}
-"""
-    assert constraining(SourceFile("d.aidl", text)) == 5

@@ -18,7 +18,6 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
-from types import TracebackType
 from typing import Any
 
 from aidl_lang.tools.llm.messages import Image, Message
@@ -42,8 +41,6 @@ class Says:
     reasoning: str = ""
     stream: bool = True
     """Otherwise one JSON document, whatever was asked for."""
-    delay: float = 0.0
-    """Seconds between pieces."""
     size: int = 16
     """Characters in a piece."""
 
@@ -129,7 +126,7 @@ class Scripted:
 
     def __post_init__(self) -> None:
         self._lock = threading.Lock()
-        self._closing = threading.Event()
+        self.closing = threading.Event()
         self._providers: list[Closable] = []
         self._server = ThreadingHTTPServer(("127.0.0.1", 0), partial(_Handler, self))
         self._server.daemon_threads = False  # so that closing waits for them
@@ -167,11 +164,8 @@ class Scripted:
             return Failed(400, f"the script has only {len(self.steps)} steps")
         return step(request) if callable(step) else step
 
-    def wait(self, seconds: float | None = None) -> None:
-        self._closing.wait(seconds)
-
     def close(self) -> None:
-        self._closing.set()
+        self.closing.set()
         for provider in self._providers:
             provider.close()
         self._server.shutdown()
@@ -181,9 +175,7 @@ class Scripted:
     def __enter__(self) -> Scripted:
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self.close()
 
 
@@ -237,13 +229,13 @@ class _Handler(BaseHTTPRequestHandler):
             case Says(stream=False):
                 self._json(200, protocol.document(step))
             case Says():
-                self._stream(protocol.events(step), step.delay)
+                self._stream(protocol.events(step))
             case Cut(text, clean):
                 self._stream(protocol.events(Says(text), whole=False), ends=clean)
             case Hangs(text):
                 if text:
                     self._stream(protocol.events(Says(text), whole=False), ends=False)
-                self.script.wait()
+                self.script.closing.wait()
 
     def _json(self, status: int, document: Json, *headers: tuple[str, str]) -> None:
         self._send(status, "application/json", json.dumps(document).encode(), *headers)
@@ -252,14 +244,13 @@ class _Handler(BaseHTTPRequestHandler):
         self._head(status, content_type, ("Content-Length", str(len(body))), *headers)
         self.wfile.write(body)
 
-    def _stream(self, events: Iterator[Event], delay: float = 0.0, ends: bool = True) -> None:
+    def _stream(self, events: Iterator[Event], ends: bool = True) -> None:
         """Chunks of HTTP/1.1; one that does not end looks like a lost connection when it is closed."""
         self._head(200, "text/event-stream", ("Transfer-Encoding", "chunked"))
         for name, data in events:
             text = data if isinstance(data, str) else json.dumps(data)
             event = f"event: {name}\ndata: {text}\n\n" if name else f"data: {text}\n\n"
             self.wfile.write(f"{len(event.encode()):x}\r\n{event}\r\n".encode())
-            self.script.wait(delay)
         if ends:
             self.wfile.write(b"0\r\n\r\n")
 
@@ -335,24 +326,13 @@ class _Anthropic:
             return
         yield self._event("content_block_stop")
         usage = {"output_tokens": step.usage[1]} if step.usage else {}
-        yield (
-            "message_delta",
-            {
-                "type": "message_delta",
-                "delta": {"stop_reason": self._reason(step)},
-                "usage": usage,
-            },
-        )
+        delta = {"stop_reason": self._reason(step)}
+        yield "message_delta", {"type": "message_delta", "delta": delta, "usage": usage}
         yield "message_stop", {"type": "message_stop"}
 
     def document(self, step: Says) -> Json:
-        content = [{"type": "text", "text": step.text}]
-        return {
-            **self._frame(),
-            "content": content,
-            "stop_reason": self._reason(step),
-            "usage": self._usage(step),
-        }
+        said = {"content": [{"type": "text", "text": step.text}], "stop_reason": self._reason(step)}
+        return {**self._frame(), **said, "usage": self._usage(step)}
 
     def _frame(self) -> Json:
         return {"id": "msg_1", "type": "message", "role": "assistant", "model": self.model}

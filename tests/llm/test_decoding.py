@@ -11,26 +11,11 @@ import pytest
 
 from aidl_lang.tools.cli import main
 from tests.grammars.engines import engine
-from tests.llm.scripted import Failed, Scripted
+from tests.llm.scripted import Failed
 
 PROGRAM = "solid plate {\n    outline = rectangle(center: origin, width: 60, height: 40)\n}\n"
 KNOWN = "llama.cpp, sglang, vllm, llama.cpp:llguidance, sglang:llguidance, vllm:llguidance"
 REPLY = f"A plate is a rectangle.\n\n```aidl\n{PROGRAM}```"
-
-
-@pytest.fixture
-def generate(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, scripted: Callable[..., Scripted]
-) -> Callable[..., tuple[int, Scripted]]:
-    """Run the command in a folder of its own against a script: its exit code and the server."""
-    monkeypatch.chdir(tmp_path)
-
-    def run(steps: list[Any], *arguments: str) -> tuple[int, Scripted]:
-        server = scripted(steps)
-        address = ["--base-url", server.base_url, "--model", "m"]
-        return main(["generate", "a plate", *address, *arguments]), server
-
-    return run
 
 
 def grammar(capsys: pytest.CaptureFixture[str], format: str = "gbnf") -> str:
@@ -62,7 +47,7 @@ def test_what_a_server_is_sent(
     _, other = generate([REPLY], "--constrain", f"{server}:llguidance")
     assert other.requests[0].body == plain.requests[0].body | members(grammar(capsys, "llguidance"))
     transcript = json.loads(Path("plate.transcript.json").read_text("utf-8"))
-    assert transcript["provider"] == f"openai:m (constrained: {server})"
+    assert transcript["provider"] == f"openai:test-model (constrained: {server})"
 
 
 # --- Servers that do not ------------------------------------------------------------------------
@@ -86,8 +71,8 @@ def test_a_reply_that_does_not_keep_to_the_grammar(
     code, server = generate([reply, REPLY], "--constrain", "vllm", "-o", "plate.aidl")
     assert (code, len(server.requests), list(Path().iterdir())) == (2, 1, [])
     assert capsys.readouterr().err == (
-        "error[E0951]: the reply of openai:m does not keep to the grammar: `structured_outputs` in the "
-        "request was not heeded\n"
+        "error[E0951]: the reply of openai:test-model does not keep to the grammar: `structured_outputs` in "
+        "the request was not heeded\n"
         f"  = hint: does --constrain name the kind of server that answers? It knows {KNOWN}\n"
         "  = hint: without --constrain, mistakes of syntax are told to the model\n"
     )
@@ -114,13 +99,6 @@ def test_anthropic_takes_none(
     assert capsys.readouterr().err == (
         "error[E0950]: anthropic:m takes no grammar\n  = hint: leave --constrain out\n"
     )
-
-
-def test_an_unknown_kind_of_server(capsys: pytest.CaptureFixture[str]) -> None:
-    with pytest.raises(SystemExit) as ended:
-        main(["generate", "a plate", "--constrain", "ollama"])
-    assert ended.value.code == 2
-    assert f"there is no `ollama`; there are {KNOWN}\n" in capsys.readouterr().err
 
 
 # --- What the grammar lets through is found -------------------------------------------------------

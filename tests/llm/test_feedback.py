@@ -14,6 +14,7 @@ from aidl_lang.tools.cli import main
 from aidl_lang.tools.llm import generation
 from aidl_lang.tools.llm.aidl import Aidl
 from aidl_lang.tools.llm.messages import find_program
+from tests.sweep.here import at_once as at_once
 
 PROGRAM = "solid plate { outline = rectangle(width: 60, height: 40) }\n"
 
@@ -93,6 +94,7 @@ def test_the_stage_is_the_first_that_fails() -> None:
     assert stage(plate.replace("REST", "")) == "done"
 
 
+@pytest.mark.usefixtures("at_once")
 def test_a_robust_program_is_asked_for_once() -> None:
     plate = """solid plate {
     param way = 0 in 0..50

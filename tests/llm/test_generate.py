@@ -13,9 +13,6 @@ from typing import Any
 import pytest
 from PIL import Image
 
-from aidl_lang import pipeline
-from aidl_lang.common.source import SourceFile
-from aidl_lang.tools.cli import main
 from aidl_lang.tools.reference import guide
 from tests.llm.scripted import Says, Scripted
 
@@ -37,22 +34,6 @@ DELETED = CONFLICT.replace("        bore.right <= outline.left + 20\n", "")
 
 def block(program: str) -> str:
     return f"```aidl\n{program}```"
-
-
-@pytest.fixture
-def generate(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, scripted: Callable[..., Scripted]
-) -> Callable[..., Any]:
-    """Run the command in a folder of its own against a script: its exit code and the server."""
-    monkeypatch.chdir(tmp_path)
-
-    def run(steps: list[Any], *arguments: str, **more: Any) -> tuple[int, Scripted]:
-        server = scripted(steps, **more)
-        for name, value in server.environment.items():
-            monkeypatch.setenv(name, value)
-        return main(["generate", "a plate with a bore", *arguments]), server
-
-    return run
 
 
 def transcript(name: str = "plate.transcript.json") -> dict[str, Any]:
@@ -245,10 +226,3 @@ def test_a_picture_goes_with_the_request(generate: Callable[..., Any]) -> None:
     assert sent.text.startswith("The picture shows what is meant.\n\n")
     uri = transcript()["messages"][1]["images"][0]
     assert base64.b64decode(uri.partition(",")[2]) == sent.images[0].data
-
-
-def test_the_programs_of_this_file_are_what_they_are_said_to_be() -> None:
-    def status(program: str) -> str:
-        return pipeline.compile(SourceFile("part.aidl", program)).status
-
-    assert [status(p) for p in (PLATE, WRONG, CONFLICT, DELETED)] == ["solved", "wrong", "partial", "solved"]

@@ -6,7 +6,6 @@ The tests are there only when AIDL_TEST_MODEL names the folder that `install.py`
 from __future__ import annotations
 
 import os
-import socket
 import subprocess
 import time
 from collections.abc import Iterator
@@ -17,6 +16,7 @@ import pytest
 
 from tests.llm.conftest import _nothing_in_the_environment as _nothing_in_the_environment
 from tests.model.install import Installed
+from tests.sweep.cluster import free_port
 
 FOLDER = os.environ.get("AIDL_TEST_MODEL", "")
 collect_ignore_glob = [] if FOLDER else ["test_*.py"]
@@ -34,9 +34,7 @@ def installed() -> Installed:
 @pytest.fixture(scope="session")
 def address(installed: Installed, tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
     """The base URL of a server that has loaded the model."""
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        port = probe.getsockname()[1]
+    port = free_port()
     log = tmp_path_factory.mktemp("server") / "log"
     command = [installed.server, "-m", installed.model, "--host", "127.0.0.1", "--port", port]
     options = ["-c", CONTEXT, "-np", 1, "-t", THREADS, "-a", "smollm2-135m", "--offline"]

@@ -11,6 +11,7 @@ from aidl_lang.tools.ranges import Walk, has_way, ranges, sentences, walking
 from aidl_lang.tools.ranges.looks import differences, look
 from aidl_lang.tools.ranges.walking import Remedy, walked
 from tests.documents import ROOT
+from tests.sweep.here import at_once as at_once
 
 
 def walk(text: str) -> Walk:
@@ -20,10 +21,6 @@ def walk(text: str) -> Walk:
     assert compiled.ok, compiled.diagnostics
     (knob,) = compiled.knobs
     return walked(job, knob)
-
-
-def kinds(text: str) -> list[tuple[str, float, float]]:
-    return [(c.kind, turn.before, turn.after) for turn in walk(text).turns for c in turn.changes]
 
 
 def edited(text: str, remedy: Remedy) -> str:
@@ -71,19 +68,6 @@ drawing d {
     assert turn.after - turn.before <= 0.0501
 
 
-def test_a_rounded_number_and_a_choice_are_no_jumps() -> None:
-    text = """\
-solid plate {
-    param wide = 60mm in 40mm..100mm
-    let pitch = 5mm * round(wide / 20mm) + (if wide > 71mm then 3mm else 0mm)
-    body = rectangle(center: origin, width: wide, height: 50)
-    hole bore { rim = circle(center: guess((1, 1)), radius: 3) }
-    constrain { bore.rim.center.x == pitch; bore.rim.center.y == 0 }
-}
-"""
-    assert kinds(text) == []
-
-
 def test_holes_that_meet_and_holes_at_the_edge_are_told_by_name() -> None:
     text = """\
 solid plate {
@@ -102,44 +86,6 @@ solid plate {
     assert last.changes[0].text == (
         "the openings of `plate` go from 2 to 0: `plate.a.rim`, `plate.b.rim` break through its edge"
     )
-
-
-def test_bodies_that_begin_to_overlap_and_let_go_are_told_with_their_place() -> None:
-    text = """\
-assembly pair {
-    param shift = 20mm in 0mm..60mm
-    solid a { body = rectangle(center: fixed((0, 0)), width: 40, height: 20) }
-    solid b { body = rectangle(center: fixed((30 + shift, 0)), width: 40, height: 20) }
-}
-"""
-    assert [(kind, round(after)) for kind, _, after in kinds(text)] == [("contact", 10)]
-
-
-def test_what_is_of_one_kind_is_quiet_and_a_count_is_no_alarm() -> None:
-    text = """\
-solid plate {
-    param holes = 3 in 1..6
-    body = rectangle(center: origin, width: 200, height: 40)
-    hole row { dots = linear_array(circle(radius: 3), n: holes, pitch: 20) }
-    constrain row.left == body.left + 10
-}
-"""
-    found = walk(text)
-    assert (found.turns, found.stopped, found.declared) == ((), "", 5)
-    assert list(sentences(found)) == []
-
-
-def test_an_assert_is_told_where_it_begins_to_fail() -> None:
-    text = """\
-solid plate {
-    param width = 40mm in 20mm..200mm
-    body = rectangle(center: origin, width: width, height: 30)
-    assert width <= 151.3mm
-}
-"""
-    (turn,) = walk(text).turns
-    assert (turn.changes[0].kind, turn.changes[0].line) == ("error", 4)
-    assert 151.0 <= turn.before <= 151.3 < turn.after <= 151.6
 
 
 def test_a_hole_that_crosses_another_between_two_steps_is_found() -> None:
@@ -162,6 +108,7 @@ def test_time_that_is_over_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
     assert list(sentences(found)) == ["`lean` was not walked to its ends: 4 values were tried"]
 
 
+@pytest.mark.usefixtures("at_once")
 def test_params_are_walked_side_by_side_and_what_is_left_is_counted() -> None:
     text = ARM.replace("length: 40", "length: long").replace(
         "    ground", "    param long = 40 in 30..50\n    ground"
@@ -174,7 +121,7 @@ def test_params_are_walked_side_by_side_and_what_is_left_is_counted() -> None:
     assert ([k.path for k in none.left], none.ok) == (["lean", "long"], False)
 
 
-@pytest.mark.parametrize("name", ["workshop/linkage", "hanger"])
+@pytest.mark.parametrize("name", [pytest.param("workshop/linkage", marks=pytest.mark.slow), "hanger"])
 def test_each_value_is_as_if_it_were_compiled_alone(name: str) -> None:
     text = (ROOT / "examples" / f"{name}.aidl").read_text("utf-8")
     source = SourceFile("it.aidl", text)
@@ -189,20 +136,6 @@ def test_each_value_is_as_if_it_were_compiled_alone(name: str) -> None:
             assert not differences(kept, alone)
             assert kept.places == alone.places
             assert abs(kept.spots - alone.spots).max() < 1e-6
-
-
-def test_a_count_with_which_a_hole_leaves_its_part_is_told() -> None:
-    text = """\
-solid plate {
-    param holes = 2 in 1..6
-    body = rectangle(bottom_left: fixed((0, 0)), width: 90, height: 40)
-    for i in 1..holes { hole cut[i] { dot = circle(center: fixed((20 * i, 20)), radius: 3) } }
-}
-"""
-    found = walk(text)
-    assert [(turn.before, turn.after) for turn in found.turns] == [(4, 5)]
-    assert {c.kind for c in found.turns[0].changes} == {"openings", "warning"}
-    assert found.declared == 5
 
 
 def test_a_jump_at_the_end_of_a_range_is_looked_at_within_it() -> None:

@@ -7,6 +7,8 @@ from concurrent.futures import Future
 from pathlib import Path
 from typing import TypeVar
 
+import pytest
+
 from aidl_lang import pipeline
 from aidl_lang.common.source import SourceFile
 from aidl_lang.common.world import DiskWorld
@@ -30,6 +32,17 @@ solid plate {
     assert body.width < 110mm, "it fits the sheet"
 }
 """
+SIGN = """\
+param name = "Ada"
+param width = 60mm in 40..400
+@thickness(3mm)
+solid sign {
+    plate = rectangle(center: origin, width: width, height: 20mm)
+    drawing letters { word = text(name, height: 8mm) }
+    assert letters.width <= width - 6mm, "the name is too long"
+    assert letters.height <= 16mm, "the name is too high"
+}
+"""
 
 
 class Here:
@@ -51,6 +64,14 @@ class Here:
 
     def close(self) -> None:
         pass
+
+
+@pytest.fixture
+def at_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Sweeps, the ends of params and what lies between are carried out in the test's own process."""
+    monkeypatch.setattr("aidl_lang.common.processes.prepared", lambda preload: None)
+    monkeypatch.setattr("aidl_lang.tools.sweeping.session.Guarded", lambda workers, preload: Here())
+    monkeypatch.setattr("aidl_lang.tools.ends.Guarded", lambda workers, preload: Here())
 
 
 def asked(

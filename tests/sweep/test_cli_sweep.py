@@ -12,8 +12,8 @@ import shlex
 import subprocess
 import sys
 from pathlib import Path
+from xml.etree import ElementTree
 
-import ezdxf
 import pytest
 
 import aidl_lang
@@ -21,53 +21,7 @@ from aidl_lang.tools.cli import main, sweep
 from aidl_lang.tools.sweeping import session
 from aidl_lang.tools.sweeping.session import Progress
 from tests.commands import Aidl as Command
-from tests.commands import aidl as aidl
-from tests.sweep.here import PLATE, Here
-
-SIGN = """\
-param name = "Ada"
-param width = 60mm in 40..400
-@thickness(3mm)
-solid sign {
-    plate = rectangle(center: origin, width: width, height: 20mm)
-    drawing letters { word = text(name, height: 8mm) }
-    assert letters.width <= width - 6mm, "the name is too long"
-    assert letters.height <= 16mm, "the name is too high"
-}
-"""
-
-
-BORED = """
-solid plate {
-    param width = 80 in 40..120
-    body = rectangle(center: fixed((0, 0)), width: width, height: 40)
-    hole slot { rim = rectangle(center: fixed((30, 0)), width: 10, height: 10) }
-}
-"""
-
-
-@pytest.fixture
-def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """An empty working directory with programs in it; sweeps run in this process."""
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setenv("NO_COLOR", "1")
-    (tmp_path / "plate.aidl").write_text(PLATE)
-    (tmp_path / "sign.aidl").write_text(SIGN)
-    monkeypatch.setattr(session, "Guarded", lambda workers, preload: Here())
-    return tmp_path
-
-
-def test_failures_are_told_with_their_commands(folder: Path, aidl: Command) -> None:
-    varied = ("-D", "width=80,120", "-D", "style=square")
-    done = aidl("sweep", "plate.aidl", *varied, "-o", "{width}.dxf", "--kerf", "0.2")
-    assert (done.code, done.out) == (1, "")
-    assert done.err.splitlines()[:-1] == [
-        "failing: 2: width=120 style=square",
-        "  E0604 line 10: assertion failed: it fits the sheet (120 is not < 110)",
-        "  aidl compile plate.aidl -D width=120 -D 'style=\"square\"' --kerf=0.2 -o 120.dxf",
-    ]
-    assert re.fullmatch(r"plate.aidl: 2 variants, 1 well, 1 failing, \d+\.\d s", done.err.splitlines()[-1])
-    assert [path.name for path in folder.glob("*.dxf")] == ["80.dxf"]
+from tests.sweep.here import PLATE, SIGN
 
 
 def test_a_summary_for_scripts(folder: Path, aidl: Command) -> None:
@@ -77,60 +31,6 @@ def test_a_summary_for_scripts(folder: Path, aidl: Command) -> None:
     (failure,) = told["failures"]
     assert (failure["n"], failure["params"], failure["messages"][0]["code"]) == (2, {"width": 120.0}, "E0604")
     assert aidl("sweep", "plate.aidl", "-D", "width=80").code == 0
-
-
-def test_neighbours_of_different_kind_are_told(folder: Path, aidl: Command) -> None:
-    (folder / "bored.aidl").write_text(BORED)
-    done = aidl("sweep", "bored.aidl", "-D", "width=60,80", "--json")
-    told = "`width` from 60 to 80: holes go from 0 to 1"
-    assert (done.code, json.loads(done.out)["turns"]) == (0, [told])
-    assert done.err.splitlines()[0] == f"of another kind: {told}; `aidl check --range` tells where"
-
-
-def test_a_sweep_that_stops_says_how_it_goes_on(folder: Path, aidl: Command) -> None:
-    words = ("sweep", "plate.aidl", "-D", "width=120,80,60,40", "-o", "t.csv")
-    done = aidl(*words, "--stop-on-error")
-    assert done.code == 1
-    assert (
-        "1 of 4 variants done; `t.csv.sweep` has what is done; the same command with `--resume` goes on"
-        in done.err
-    )
-    again = aidl(*words, "--resume")
-    assert (again.code, "4 variants, 3 well, 1 failing, " in again.err, "known before" in again.err) == (
-        1,
-        True,
-        True,
-    )
-
-
-@pytest.mark.parametrize(
-    ("words", "code", "said"),
-    [
-        (["-D", "widht=1"], 2, "error[E0911]: there is no param `widht`"),
-        (["-D", "width=60..100"], 0, ""),
-        (["-D", "width"], 2, "expected NAME=VALUES, as in width=60..200/8, not `width`"),
-        ([], 2, "error[E0971]: nothing is varied"),
-        (["--table", "none.csv"], 2, "error[E0972]: there is no file `none.csv`"),
-        (["-D", "width=60", "-o", "a.dxf"], 2, "error[E0973]: every variant would be written to `a.dxf`"),
-        (["-D", "width=60", "--on", "cloud"], 2, "error[E0976]: there is no engine `cloud`"),
-        (
-            ["-D", "width=60", "--cache", "."],
-            2,
-            "error[E0974]: `.` cannot keep outcomes: it holds other files",
-        ),
-        (["-D", "width=60", "-o", "plate.csv/x.csv"], 2, "error[E0904]"),
-    ],
-)
-def test_wrong_use(folder: Path, aidl: Command, words: list[str], code: int, said: str) -> None:
-    done = aidl("sweep", "plate.aidl", *words)
-    assert done.code == code, done.err
-    assert said in done.err
-
-
-def test_a_program_that_is_wrong_is_told_once(folder: Path, aidl: Command) -> None:
-    (folder / "wrong.aidl").write_text(PLATE.replace("width: width", "width: wdth"))
-    done = aidl("sweep", "wrong.aidl", "-D", "width=60,80")
-    assert (done.code, done.err.count("error[")) == (1, 1)
 
 
 HOSTILE = [
@@ -160,7 +60,7 @@ def told_of(folder: Path, names: list[str]) -> None:
         if row["ok"] == "true":
             path = Path(row["files"])
             assert path.parent == Path("out")
-            assert ezdxf.readfile(folder / path).modelspace()
+            ElementTree.parse(folder / path)
         else:
             assert row["messages"], row
             assert not row["files"], row
@@ -183,12 +83,11 @@ def write_orders(folder: Path, names: list[str]) -> None:
 def test_hostile_orders_are_right_or_told(folder: Path, aidl: Command) -> None:
     names = orders(len(HOSTILE) + 1)
     write_orders(folder, names)
-    outputs = ("-o", "out/{name}.dxf", "-o", "table.csv", "-o", "sheet.html")
+    outputs = ("-o", "out/{name}.svg", "-o", "table.csv")
     done = aidl("sweep", "sign.aidl", "--table", "orders.csv", *outputs)
     assert done.code == 1
     told_of(folder, names)
     assert "\x1b" not in done.err.replace("\x1b[K", "")
-    assert b"<script>alert" not in (folder / "sheet.html").read_bytes()
 
 
 def test_a_command_with_a_hostile_name_makes_its_file(folder: Path, aidl: Command) -> None:
@@ -225,7 +124,7 @@ def test_five_hundred_signs(tmp_path: Path) -> None:
     (tmp_path / "sign.aidl").write_text(SIGN)
     names = [*orders(499), "a" * 10_000]
     write_orders(tmp_path, names)
-    words = ["--table", "orders.csv", "-o", "out/{name}.dxf", "-o", "table.csv", "-o", "sheet.html"]
+    words = ["--table", "orders.csv", "-o", "out/{name}.svg", "-o", "table.csv", "-o", "sheet.html"]
     words += ["--time-limit", "60"]  # for the name of 10,000 letters
     with open(tmp_path / "said", "wb") as said:
         done = subprocess.run(
@@ -331,11 +230,3 @@ def test_a_drawing_sheet_for_each_variant(aidl: Command, tmp_path: Path):
     before = (tmp_path / "1.svg").read_bytes()
     assert aidl(*shlex.split(command)[1:]).code == 0
     assert (tmp_path / "1.svg").read_bytes() == before
-    for more, code in (
-        (("-o", "{n}.dxf"), "error[E0905]: there are no sheets of the format `dxf`"),
-        (("-o", "t.csv"), "error[E0973]: `--drawing-sheet` has no sheets to make"),
-        (("-o", "{n}.pdf", "--kerf", "0.1"), "error[E0973]: a drawing sheet has no `--kerf=0.1`"),
-    ):
-        refused = aidl(*made, *more, "--drawing-sheet")
-        assert refused.code != 0
-        assert refused.err.startswith(code)

@@ -27,8 +27,8 @@ PROGRAM = 'import "lib.aidl"\n' + PLATE.replace("height: 30mm", "height: tall")
 
 @pytest.fixture(scope="module")
 def shared(tmp_path_factory: pytest.TempPathFactory) -> Iterator[LocalCluster]:
-    """A cluster that nobody kills."""
-    cluster = LocalCluster(tmp_path_factory.mktemp("logs"), 2)
+    """A cluster that nobody kills, with one worker for two calls at a time."""
+    cluster = LocalCluster(tmp_path_factory.mktemp("logs"), workers=1, threads=2)
     yield cluster
     cluster.close()
 
@@ -36,7 +36,7 @@ def shared(tmp_path_factory: pytest.TempPathFactory) -> Iterator[LocalCluster]:
 @pytest.fixture
 def two(tmp_path: Path) -> Iterator[LocalCluster]:
     (tmp_path / "logs").mkdir()
-    cluster = LocalCluster(tmp_path / "logs", 2)
+    cluster = LocalCluster(tmp_path / "logs", workers=2)
     yield cluster
     cluster.close()
 
@@ -86,47 +86,40 @@ def finish(crew: Crew[str, str]) -> None:
         crew.came(60)
 
 
-def local(folder: Path, count: int) -> None:
-    run = begin(folder, "local.csv", count)
-    said = run.communicate()[1]
-    assert run.returncode == 1, said  # those wider than the sheet fail
+def ended(run: subprocess.Popen[str], code: int = 1) -> str:
+    """What a sweep has said at its end; those wider than the sheet fail."""
+    said = run.communicate(timeout=600)[1]
+    assert run.returncode == code, said
+    return said
 
 
-def test_a_sweep_on_a_cluster_equals_one_here(
-    tmp_path: Path, shared: LocalCluster, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    write_programs(tmp_path)
-    monkeypatch.chdir(tmp_path)
+def test_a_sweep_on_a_cluster_equals_one_here(folder: Path, shared: LocalCluster) -> None:
+    write_programs(folder)
     assert main(words_for("local.csv", 6)) == 1
     assert main(words_for("remote.csv", 6, "--on", shared.address)) == 1
-    same(tmp_path, "local.csv", "remote.csv", 6)
+    same(folder, "local.csv", "remote.csv", 6)
 
 
 @pytest.mark.slow
 def test_three_hundred_variants_and_a_worker_killed_in_the_middle(tmp_path: Path, two: LocalCluster) -> None:
-    local(tmp_path, 300)
-    whole = begin(tmp_path, "remote.csv", 300, "--on", two.address)
-    said = whole.communicate(timeout=600)[1]
-    assert whole.returncode == 1, said
+    ended(begin(tmp_path, "local.csv", 300))
+    ended(begin(tmp_path, "remote.csv", 300, "--on", two.address))
     same(tmp_path, "local.csv", "remote.csv", 300)
     run = begin(tmp_path, "killed.csv", 300, "--on", two.address)
     wait_until_done(run, 40)
     two.kill_worker()
     two.add_worker()
-    said = run.communicate(timeout=600)[1]
-    assert run.returncode == 1, said
+    ended(run)
     same(tmp_path, "local.csv", "killed.csv", 300)
 
 
 @pytest.mark.slow
 def test_the_scheduler_may_be_started_anew(tmp_path: Path, two: LocalCluster) -> None:
-    local(tmp_path, 120)
+    ended(begin(tmp_path, "local.csv", 120))
     run = begin(tmp_path, "remote.csv", 120, "--on", two.address)
     wait_until_done(run, 20)
     two.restart()
-    said = run.communicate(timeout=600)[1]
-    assert run.returncode == 1, said
-    assert "had to be begun again, as what compiled them was gone" in said
+    assert "had to be begun again, as what compiled them was gone" in ended(run)
     same(tmp_path, "local.csv", "remote.csv", 120)
 
 
@@ -134,12 +127,11 @@ def test_the_scheduler_may_be_started_anew(tmp_path: Path, two: LocalCluster) ->
 def test_a_client_that_is_interrupted_leaves_nothing_behind_and_goes_on(
     tmp_path: Path, two: LocalCluster
 ) -> None:
-    local(tmp_path, 120)
+    ended(begin(tmp_path, "local.csv", 120))
     run = begin(tmp_path, "remote.csv", 120, "--on", two.address)
     wait_until_done(run, 20)
     os.kill(run.pid, signal.SIGINT)
-    said = run.communicate(timeout=120)[1]
-    assert run.returncode == 130, said
+    said = ended(run, 130)
     assert "`remote.csv.sweep` has what is done; the same command with `--resume` goes on" in said
     from distributed import Client
 
@@ -148,10 +140,7 @@ def test_a_client_that_is_interrupted_leaves_nothing_behind_and_goes_on(
         while any(client.processing().values()) and time.monotonic() < until:
             time.sleep(0.5)
         assert not any(client.processing().values())
-    again = begin(tmp_path, "remote.csv", 120, "--on", two.address, "--resume")
-    said = again.communicate(timeout=600)[1]
-    assert again.returncode == 1, said
-    assert "known before" in said
+    assert "known before" in ended(begin(tmp_path, "remote.csv", 120, "--on", two.address, "--resume"))
     same(tmp_path, "local.csv", "remote.csv", 120)
 
 
@@ -159,9 +148,8 @@ def test_limits_hold_on_a_cluster(tmp_path: Path, shared: LocalCluster) -> None:
     engine = Cluster(shared.address, "aidl_lang.common.processes")
     try:
         crew: Crew[str, str] = Crew(engine)
-        words = ["well", "die", "hang", "raise", "too"]
-        for word in words:
-            crew.give(word, 5.0, obey, word, str(tmp_path))
+        for word in ("well", "die", "hang", "raise", "too"):
+            crew.give(word, 1.0 if word == "hang" else 60.0, obey, word, str(tmp_path))
         found: dict[str, str | Broke] = {}
         while crew:
             found |= dict(crew.came(60))
@@ -190,7 +178,7 @@ def test_a_worker_with_another_package_is_told(shared: LocalCluster, monkeypatch
 
 
 def test_a_scheduler_that_is_not_there_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(cluster_module, "_CONNECTING", 1.0)
+    monkeypatch.setattr(cluster_module, "_CONNECTING", 0.3)
     address = f"tcp://127.0.0.1:{free_port()}"
     with pytest.raises(AidlError) as raised:
         Cluster(address, "aidl_lang.common.processes")

@@ -22,14 +22,10 @@ def obey(word: str, folder: str) -> str:
     times = len(Path(folder, word).read_text())
     if word == "hang":
         time.sleep(60)
-    if word == "die" or (word == "die once" and times == 1):
+    if word == "die":
         os.kill(os.getpid(), signal.SIGKILL)
-    if word == "stop":
-        os.kill(os.getpid(), signal.SIGSTOP)
     if word == "raise":
         raise ValueError("no such luck")
-    if word == "eat":
-        return str(len(bytearray(8 << 30)))
     return f"{word} {times}"
 
 

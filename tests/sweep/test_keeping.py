@@ -6,6 +6,7 @@ import multiprocessing
 import pickle
 import sqlite3
 import zlib
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -102,20 +103,22 @@ def test_dropping_removes_no_file_outside(tmp_path: Path) -> None:
     assert victim.read_text() == "mine"
 
 
-def _fill(folder: str, first: int) -> None:
+def _fill(folder: str, first: int, begin: Callable[[], object]) -> None:
     store = Store(Path(folder))
+    begin()
     for number in range(first, first + 30):
         store.put(f"{number}", Outcome("solved", True, asserts=number), {})
 
 
 def test_processes_share_it(tmp_path: Path) -> None:
-    context = multiprocessing.get_context("spawn")
-    both = [context.Process(target=_fill, args=(str(tmp_path / "cache"), first)) for first in (0, 15)]
-    for process in both:
-        process.start()
-    for process in both:
-        process.join()
-        assert process.exitcode == 0
+    """This one and another, at the same time."""
+    context, folder = multiprocessing.get_context("spawn"), str(tmp_path / "cache")
+    begun = context.Event()
+    other = context.Process(target=_fill, args=(folder, 0, begun.set))
+    other.start()
+    _fill(folder, 15, lambda: begun.wait(60))
+    other.join()
+    assert other.exitcode == 0
     store = Store(tmp_path / "cache")
     found = [store.get(f"{number}", nothing_read) for number in range(45)]
     assert [each and each.asserts for each in found] == list(range(45))

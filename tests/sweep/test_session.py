@@ -15,7 +15,6 @@ import ezdxf
 import pyarrow.parquet
 import pytest
 
-from aidl_lang.common.diagnostics import AidlError
 from aidl_lang.export.pdf import font_file
 from aidl_lang.tools.cli import main
 from aidl_lang.tools.sweeping.session import Sweep
@@ -69,16 +68,6 @@ def test_what_fails_is_told_with_the_command_that_makes_it(
     program, *words = shlex.split(bad["command"])
     assert (program, main(words)) == ("aidl", 1)
     assert "assertion failed: it fits the sheet" in capsys.readouterr().err
-
-
-def test_a_command_makes_the_same_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    sweep(tmp_path, ["width=41.25", "style=square"], ["out/{width}.dxf", "table.csv"])
-    (row,) = rows(tmp_path / "table.csv")
-    made = Path(row["files"]).read_bytes()
-    Path(row["files"]).unlink()
-    monkeypatch.chdir(tmp_path)
-    assert main(shlex.split(row["command"])[1:]) == 0
-    assert Path(row["files"]).read_bytes() == made
 
 
 def test_a_sweep_that_is_broken_off_goes_on(tmp_path: Path) -> None:
@@ -145,33 +134,10 @@ def test_files_that_only_some_variants_ask_for_are_sent_after_them(tmp_path: Pat
     assert ([row.ok for row in session.rows], engine.calls) == ([True, True, False], 5)
 
 
-def test_it_stops_at_an_error_where_asked(tmp_path: Path) -> None:
-    session = sweep(tmp_path, ["width=120,40,60,80"], ["t.csv"], stops_on_error=True)
-    assert (session.was_stopped, session.failed, session.is_complete) == (True, 1, False)
-    assert rows(tmp_path / "t.csv")[0]["ok"] == "false"
-    assert session.unfinished == tmp_path / "t.csv.sweep"
-
-
 def test_an_older_run_s_file_of_a_failing_variant_is_named(tmp_path: Path) -> None:
     sweep(tmp_path, ["width=80"], ["out/{width}.svg"])
     session = sweep(tmp_path, ["width=80"], ["out/{width}.svg"], text=PLATE.replace("110mm", "70mm"))
     assert session.stale == [str(tmp_path / "out" / "80.svg")]
-
-
-@pytest.mark.parametrize(
-    ("name", "said"),
-    [
-        ("all.dxf", "every variant would be written to `{}/all.dxf`"),
-        ("out/{widht}.dxf", "`{}/out/{widht}.dxf` names `{widht}`, which is not varied"),
-        ("table.txt", "`{}/table.txt` is neither a table nor a contact sheet"),
-        ("missing/table.csv", "`{}/missing/table.csv` cannot be written: there is no directory `{}/missing`"),
-        ("out/{width}.xyz", "there is no format `xyz`"),
-    ],
-)
-def test_outputs_that_cannot_be_are_refused(tmp_path: Path, name: str, said: str) -> None:
-    with pytest.raises(AidlError) as raised:
-        sweep(tmp_path, names=[name])
-    assert raised.value.diagnostic.message == said.replace("{}", str(tmp_path))
 
 
 def test_two_runs_give_the_same_bytes(tmp_path: Path) -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -11,8 +10,7 @@ import pytest
 from PIL import Image
 from playwright.sync_api import Page, sync_playwright
 
-from aidl_lang.common.diagnostics import AidlError
-from aidl_lang.tools.sweeping.sheet import fitted, in_one, on_paper
+from aidl_lang.tools.sweeping.sheet import fitted, in_one
 from server.tests.preview.conftest import ARGUMENTS, CHROMIUM
 from tests.sweep.here import PLATE, sweep
 
@@ -104,14 +102,6 @@ def test_a_page_shows_hostile_names_as_text(tmp_path: Path, browser: Page) -> No
     assert shown[::2] == NAMES
 
 
-def test_pages_of_paper_hold_what_they_say() -> None:
-    grid = on_paper(210, 297)
-    width, height = grid.size
-    assert width <= 210
-    assert height <= 297
-    assert grid.per_page >= 12
-
-
 class Typewriter:
     def length(self, text: str, size: float) -> float:
         return len(text) * size
@@ -120,15 +110,3 @@ class Typewriter:
 @pytest.mark.parametrize(("text", "kept"), [("abc", "abc"), ("abcdefgh", "abcd…"), ("", "")])
 def test_texts_are_cut_to_a_width(text: str, kept: str) -> None:
     assert fitted(Typewriter(), text, 1.0, 5.0) == kept  # type: ignore[arg-type]
-
-
-def test_too_many_variants_for_a_sheet_are_refused(tmp_path: Path) -> None:
-    with pytest.raises(AidlError, match="6000 variants are too many for"):
-        sweep(tmp_path, ["width=40..120/6000"], ["sheet.pdf"])
-
-
-def test_pictures_are_bounded() -> None:
-    from aidl_lang.tools.sweeping.sheet import png
-
-    with Image.open(io.BytesIO(png("none", []))) as image:
-        assert image.width > 0

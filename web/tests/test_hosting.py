@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import json
-from collections.abc import Callable
+from collections.abc import Awaitable, Callable
 from pathlib import Path
 from typing import Any
 
@@ -54,11 +54,17 @@ class Page:
         raise AssertionError("it did not come")
 
 
-def with_page(work: Callable[[Page], Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+Work = Callable[[Page], Awaitable[None]]
+Play = Callable[[Work], None]
+
+
+@pytest.fixture
+def play(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Play:
+    """Has work done with a page."""
     monkeypatch.setattr(hosting, "FOLDER", tmp_path / "programs")
     monkeypatch.setattr(hosting, "make_room", lambda: None)
 
-    async def run() -> None:
+    async def run(work: Work) -> None:
         page = Page()
         page.desk = hosting.Desk(page)
         try:
@@ -66,10 +72,10 @@ def with_page(work: Callable[[Page], Any], tmp_path: Path, monkeypatch: pytest.M
         finally:
             page.desk.close()
 
-    asyncio.run(run())
+    return lambda work: asyncio.run(run(work))
 
 
-def test_what_is_typed_is_kept_at_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_is_typed_is_kept_at_once(play: Play) -> None:
     async def work(page: Page) -> None:
         await page.desk.open("plate.aidl", PLATE, {})
         page.ask(1, "aidl/preview", show=[])
@@ -90,10 +96,10 @@ def test_what_is_typed_is_kept_at_once(tmp_path: Path, monkeypatch: pytest.Monke
         assert (await page.answer(4))["result"]["applied"]
         assert "width = 90 in" in page.kept[-1][1]
 
-    with_page(work, tmp_path, monkeypatch)
+    play(work)
 
 
-def test_another_program_takes_the_place(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_another_program_takes_the_place(play: Play) -> None:
     async def work(page: Page) -> None:
         rim = b"solid rim(size = 5) { edge = circle(radius: size) }\n"
         await page.desk.open("plate.aidl", PLATE, {})
@@ -105,12 +111,10 @@ def test_another_program_takes_the_place(tmp_path: Path, monkeypatch: pytest.Mon
         assert (shown["uri"], shown["status"]) == (page.uris[-1], "solved")
         assert not any(each.get("method") == "exit" for each in page.messages)
 
-    with_page(work, tmp_path, monkeypatch)
+    play(work)
 
 
-def test_a_program_that_was_stopped_runs_once_it_is_changed(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_program_that_was_stopped_runs_once_it_is_changed(play: Play) -> None:
     async def work(page: Page) -> None:
         await page.desk.open("plate.aidl", PLATE, {}, True)
         page.ask(1, "aidl/preview", show=[])
@@ -123,10 +127,10 @@ def test_a_program_that_was_stopped_runs_once_it_is_changed(
         shown = await page.found(lambda each: each.get("method") == "aidl/previewChanged")
         assert "<svg" in shown["params"]["svg"]
 
-    with_page(work, tmp_path, monkeypatch)
+    play(work)
 
 
-def test_a_large_program_has_scipy_fetched_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_large_program_has_scipy_fetched_once(play: Play) -> None:
     async def work(page: Page) -> None:
         await page.desk.open("plate.aidl", PLATE, {})
         page.ask(1, "aidl/preview", show=[])
@@ -139,7 +143,7 @@ def test_a_large_program_has_scipy_fetched_once(tmp_path: Path, monkeypatch: pyt
         assert "ModuleNotFoundError" in told["params"]["message"]
         assert page.wanted == 1
 
-    with_page(work, tmp_path, monkeypatch)
+    play(work)
 
 
 def test_turns_do_work_one_after_the_other() -> None:

@@ -74,90 +74,77 @@ HAND = """    @detached
 BELOW, MIDDLE = "foot.below(face, gap: 0)", "foot.centered_horizontally(face)"
 
 
-@pytest.mark.parametrize(
-    "after",
-    [
-        changed((BELOW, "under(foot, face, gap: 0mm)"), (MIDDLE, "center_horizontally(foot, face)")),
-        changed(("hand.bottom == face.center_y", "face.center_y == hand.bottom")),
-        changed((f"        {BELOW}\n        {MIDDLE}\n", f"        {MIDDLE}\n        {BELOW}\n")),
-        changed((f"        {BELOW}\n", ""), ("    assert", f"    constrain {BELOW}\n    assert")),
-        changed(("foot", "stand")),
-        changed(("foot", "stand"), ("block", "slab")),
-        changed(("clock", "timepiece")),
-        changed(("15deg", "20deg"), ("height == 20", "height == 22"), ("60mm", "70mm")),
-        changed((BELOW, "foot.top == face.bottom")),
-        changed((BELOW, "foot.below(face, gap: 0) and foot.block.width <= 60")),
-        changed(
-            ("    solid foot {\n        block", "    solid base { solid foot {\n        block"),
-            ("10deg)\n    }", "10deg)\n    } }"),
-            ("foot.", "base.foot."),
-        ),
-        " ".join(CLOCK.split()),
-    ],
-    ids=[
-        *("synonyms", "sides", "order", "block", "renamed", "all renamed", "root", "numbers"),
-        *("rewritten", "joined", "moved", "format"),
-    ],
-)
+SAME = {
+    "synonyms": changed((BELOW, "under(foot, face, gap: 0mm)"), (MIDDLE, "center_horizontally(foot, face)")),
+    "sides": changed(("hand.bottom == face.center_y", "face.center_y == hand.bottom")),
+    "order": changed((f"        {BELOW}\n        {MIDDLE}\n", f"        {MIDDLE}\n        {BELOW}\n")),
+    "block": changed((f"        {BELOW}\n", ""), ("    assert", f"    constrain {BELOW}\n    assert")),
+    "renamed": changed(("foot", "stand")),
+    "all renamed": changed(("foot", "stand"), ("block", "slab")),
+    "root": changed(("clock", "timepiece")),
+    "numbers": changed(("15deg", "20deg"), ("height == 20", "height == 22"), ("60mm", "70mm")),
+    "rewritten": changed((BELOW, "foot.top == face.bottom")),
+    "joined": changed((BELOW, "foot.below(face, gap: 0) and foot.block.width <= 60")),
+    "moved": changed(
+        ("    solid foot {\n        block", "    solid base { solid foot {\n        block"),
+        ("10deg)\n    }", "10deg)\n    } }"),
+        ("foot.", "base.foot."),
+    ),
+    "format": " ".join(CLOCK.split()),
+}
+
+
+@pytest.mark.parametrize("after", SAME.values(), ids=SAME)
 def test_the_same_in_other_words_is_no_loss(after: str) -> None:
     assert compiled(after).status == "solved"
     assert phrases(CLOCK, after) == []
 
 
-@pytest.mark.parametrize(
-    ("after", "phrase"),
-    [
-        (
-            changed((f"        {MIDDLE}\n", "")),
-            "`foot.centered_horizontally(face)` (in `clock`) is gone: it fits as it was; put it back",
-        ),
-        (
-            changed((" rotated 15deg", "")),
-            "the rotation `rotated 15deg` of `clock.hand` is gone: it fits as it was; put it back",
-        ),
-        (
-            changed((" rotated 15deg", " rotated 0deg")),
-            "the rotation `rotated 15deg` of `clock.hand` is gone: it fits as it was; put it back",
-        ),
-        (
-            changed((", angle: 10deg", "")),
-            "the rotation `angle: 10deg` of `clock.foot.block` is gone: it fits as it was; put it back",
-        ),
-        (
-            changed((MIDDLE, f"prefer {MIDDLE} weight 2")),
-            "`foot.centered_horizontally(face)` (in `clock`) became a wish: it fits as it was; put it back",
-        ),
-        (
-            changed((f"        {MIDDLE}\n", ""), ("    assert", f"    assert {MIDDLE}\n    assert")),
-            "`foot.centered_horizontally(face)` (in `clock`) is only checked now, by an `assert`: it fits as"
-            " it was; put it back",
-        ),
-        (
-            changed(("    assert foot.top <= face.bottom\n", "")),
-            "`assert foot.top <= face.bottom` (in `clock`) is gone: it fits as it was; put it back",
-        ),
-        (
-            changed((HAND, ""), ("        hand.bottom == face.center_y\n", "")),
-            "structure `clock.hand` (solid, 1 geometry) is gone, and with it `hand.bottom == face.center_y`:"
-            " it fits as it was; put it back",
-        ),
-        (
-            changed((BELOW, "foot.width <= face.width")),
-            "`foot.below(face, gap: 0)` (in `clock`) was replaced by `foot.width <= face.width`, which says"
-            " less: it fits as it was; put it back",
-        ),
-        (
-            changed(("    param size = 60mm in 40..100\n", ""), ("radius: size", "radius: 60")),
-            "`param size = 60mm in 40..100` (in `clock`) is gone: what it set is written as numbers now, or"
-            " not at all; use it there again",
-        ),
-        ("", "structure `clock` (assembly, 3 structures, 3 geometries, 4 constraints) is gone"),
-    ],
-    ids=[
-        *("constraint", "rotation", "level", "angle", "wish", "assert only", "assert", "structure"),
-        *("says less", "param", "all"),
-    ],
-)
+BACK = ": it fits as it was; put it back"
+CENTERED = "`foot.centered_horizontally(face)` (in `clock`)"
+LOST = {
+    "constraint": (changed((f"        {MIDDLE}\n", "")), f"{CENTERED} is gone{BACK}"),
+    "rotation": (
+        changed((" rotated 15deg", "")),
+        f"the rotation `rotated 15deg` of `clock.hand` is gone{BACK}",
+    ),
+    "level": (
+        changed((" rotated 15deg", " rotated 0deg")),
+        f"the rotation `rotated 15deg` of `clock.hand` is gone{BACK}",
+    ),
+    "angle": (
+        changed((", angle: 10deg", "")),
+        f"the rotation `angle: 10deg` of `clock.foot.block` is gone{BACK}",
+    ),
+    "wish": (changed((MIDDLE, f"prefer {MIDDLE} weight 2")), f"{CENTERED} became a wish{BACK}"),
+    "assert only": (
+        changed((f"        {MIDDLE}\n", ""), ("    assert", f"    assert {MIDDLE}\n    assert")),
+        f"{CENTERED} is only checked now, by an `assert`{BACK}",
+    ),
+    "assert": (
+        changed(("    assert foot.top <= face.bottom\n", "")),
+        f"`assert foot.top <= face.bottom` (in `clock`) is gone{BACK}",
+    ),
+    "structure": (
+        changed((HAND, ""), ("        hand.bottom == face.center_y\n", "")),
+        "structure `clock.hand` (solid, 1 geometry) is gone, and with it `hand.bottom == face.center_y`"
+        + BACK,
+    ),
+    "says less": (
+        changed((BELOW, "foot.width <= face.width")),
+        "`foot.below(face, gap: 0)` (in `clock`) was replaced by `foot.width <= face.width`, which says less"
+        + BACK,
+    ),
+    "param": (
+        changed(("    param size = 60mm in 40..100\n", ""), ("radius: size", "radius: 60")),
+        "`param size = 60mm in 40..100` (in `clock`) is gone: what it set is written as numbers now, or"
+        " not at all; use it there again",
+    ),
+    "all": ("", "structure `clock` (assembly, 3 structures, 3 geometries, 4 constraints) is gone"),
+}
+
+
+@pytest.mark.parametrize(("after", "phrase"), LOST.values(), ids=LOST)
 def test_a_loss_is_named(after: str, phrase: str) -> None:
     assert phrases(CLOCK, after) == [phrase]
 
@@ -337,44 +324,39 @@ def test_a_param_may_make_fewer() -> None:
         assert phrases(before, changed(("param n = 10", "param n = 4"), text=before)) == []
 
 
-def constraint_lines() -> list[tuple[str, str]]:
-    """Examples with one constraint each left out, of those that have it on a line of its own."""
+WHOLE = [CLOCK, POT, *((EXAMPLES / f"{name}.aidl").read_text() for name in ("bottle_opener", "toy_sword"))]
+
+
+def deleted() -> list[tuple[str, str, str]]:
+    """Programs with one constraint each left out, of those that have it on a line of its own."""
     found = []
-    for name in ("telephone", "key", "bottle_opener", "toy_sword"):
-        lines = (EXAMPLES / f"{name}.aidl").read_text().splitlines()
-        inside = False
+    for text in WHOLE:
+        lines, inside = text.splitlines(keepends=True), False
         for number, line in enumerate(lines):
-            if line.strip() == "}":
-                inside = False
+            inside = inside and line.strip() != "}"
             if inside and line.count("(") == line.count(")"):
-                found.append((name, number))
-            if line.strip() == "constrain {":
-                inside = True
-    return [(name, str(number)) for name, number in found]
+                found.append((text, "".join([*lines[:number], *lines[number + 1 :]]), line))
+            inside = inside or line.strip() == "constrain {"
+    return found
 
 
 @tries(12)
-@given(st.sampled_from(constraint_lines()))
-def test_any_constraint_deleted_is_named_and_put_back(chosen: tuple[str, str]) -> None:
-    name, number = chosen[0], int(chosen[1])
-    text = (EXAMPLES / f"{name}.aidl").read_text()
-    lines = text.splitlines()
-    after = "\n".join([*lines[:number], *lines[number + 1 :]]) + "\n"
-    words = lines[number].split("//")[0].strip()
+@given(st.sampled_from(deleted()))
+def test_any_constraint_deleted_is_named_and_put_back(chosen: tuple[str, str, str]) -> None:
+    text, after, line = chosen
     (loss,) = told(text, after).missing
-    assert loss.item.text == " ".join(words.split())
+    assert loss.item.text == " ".join(line.split("//")[0].split())
     assert phrases(text, restored(after, text)) == []
 
 
 @tries(10)
 @given(
-    st.sampled_from(["telephone", "key", "bottle_opener", "toy_sword"]),
+    st.sampled_from(WHOLE),
     st.text(st.characters(codec="utf-8"), max_size=5),
     st.floats(0, 1),
     st.floats(0, 1),
 )
-def test_any_text_may_follow(name: str, junk: str, first: float, second: float) -> None:
-    text = (EXAMPLES / f"{name}.aidl").read_text()
+def test_any_text_may_follow(text: str, junk: str, first: float, second: float) -> None:
     a, b = sorted(int(share * len(text)) for share in (first, second))
     ledger = told(text, text[:a] + junk + text[b:])
     assert all(loss.phrase for loss in ledger.missing)
