@@ -7,10 +7,17 @@ from typing import Any
 import pytest
 from playwright.sync_api import expect
 
-from server.tests.preview.conftest import Pane
-from server.tests.preview.messages import TEXT, URI, picture, place, problem, words
+from server.tests.preview.pane.conftest import Pane, drawn
+from server.tests.preview.pane.messages import OUTLINE, TEXT, URI, picture, place, problem, words
 
 LINES = TEXT.split("\n")
+
+
+@pytest.fixture
+def pane(pane: Pane) -> Pane:
+    """The pane with the text beside the drawing."""
+    pane.writes()
+    return pane
 
 
 def type_at_end(pane: Pane, line: int, text: str) -> None:
@@ -169,9 +176,12 @@ def test_keys_of_the_pane_are_letters_in_the_text(pane: Pane) -> None:
 @pytest.mark.parametrize("line", ["    param depth = 20", "    param depth = 20m", "    r = rect"])
 def test_enter_is_a_new_line_whatever_is_offered(pane: Pane, line: str) -> None:
     type_at_end(pane, 1, f"\n{line.strip()}")
-    pane.page.wait_for_timeout(500)  # for a list to open, where one does
-    is_offered = pane.find(".cm-tooltip-autocomplete").is_visible()
-    assert is_offered == (not line.endswith("0"))
+    offered = pane.find(".cm-tooltip-autocomplete")
+    if line.endswith("0"):
+        pane.page.wait_for_timeout(300)  # none opens
+        expect(offered).to_be_hidden()
+    else:
+        expect(offered).to_be_visible()
     pane.page.keyboard.press("Enter")
     pane.page.keyboard.type("x")
     expect(pane.find(".cm-line").nth(2)).to_have_text(line)
@@ -207,3 +217,17 @@ def test_there_is_no_text_where_the_host_tells_none(open_pane: Any) -> None:
     for part in ("source", "source-toggle", "history"):
         expect(pane.find(f"#{part}")).to_be_hidden()
     assert not any(path.endswith("editor.js") for path in pane.host.requests)
+
+
+def test_the_text_follows_the_pointer_and_back(pane: Pane) -> None:
+    expect(pane.find(".cm-line")).to_have_text(LINES)
+    pane.move(20, 15)
+    expect(pane.find(".cm-line.marked")).to_have_text([LINES[5]])
+    pane.find(".cm-line").nth(3).click()
+    assert pane.outlined("selected") == [drawn(OUTLINE)]
+    pane.find(".cm-line").nth(6).click()
+    expect(pane.find(".mark.selected .line")).to_have_count(1)
+    assert pane.outlined("selected") == [drawn(3)]  # the innermost whose place has this line
+    pane.page.get_by_role("button", name="Text").click()
+    expect(pane.find("#source")).to_be_hidden()
+    expect(pane.find("#stage")).to_be_visible()

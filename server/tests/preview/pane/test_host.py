@@ -7,8 +7,8 @@ import json
 
 from playwright.sync_api import expect
 
-from server.tests.preview.conftest import Pane
-from server.tests.preview.messages import EXPORTS, URI, picture, problem, words
+from server.tests.preview.pane.conftest import Pane
+from server.tests.preview.pane.messages import EXPORTS, URI, picture, problem, words
 
 CODE = """
 window.sent = [];
@@ -171,6 +171,7 @@ def test_themes(pane: Pane) -> None:
 
 
 def test_everything_fits_into_narrow_windows(pane: Pane) -> None:
+    pane.writes()
     pane.shows(problems=[problem(message="a `long` " * 30)])
     for width in (320, 480, 720, 1400):
         pane.page.set_viewport_size({"width": width, "height": 800})
@@ -210,6 +211,7 @@ def test_the_drawing_is_in_sight_beside_text_problems_and_sliders(open_pane) -> 
 
 
 def test_every_control_has_a_name(pane: Pane) -> None:
+    pane.writes()
     pane.shows(problems=[problem(fixes=1)])
     unnamed = pane.page.eval_on_selector_all(
         "button, input, select, [tabindex]",

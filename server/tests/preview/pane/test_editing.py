@@ -7,8 +7,8 @@ from typing import Any
 import pytest
 from playwright.sync_api import Locator, expect
 
-from server.tests.preview.conftest import Pane
-from server.tests.preview.messages import RIM, URI, handle, knob, picture, where
+from server.tests.preview.pane.conftest import Pane
+from server.tests.preview.pane.messages import RIM, URI, handle, knob, picture, where
 
 
 def slider(pane: Pane) -> Locator:
