@@ -17,9 +17,8 @@ from aidl_server.lsp.server import converter
 from tests.documents import ROOT
 
 COMMAND = [sys.executable, "-m", "aidl_lang", "lsp"]
-ENVIRONMENT = {**os.environ, "PYTHONPATH": str(ROOT)}
-EXAMPLES = ROOT / "examples"
-TELEPHONE = EXAMPLES / "telephone.aidl"
+ENVIRONMENT = {**os.environ, "PYTHONPATH": os.pathsep.join(map(str, (ROOT, ROOT / "server")))}
+TELEPHONE = ROOT / "examples" / "telephone.aidl"
 SECONDS = 60
 """Longer than anything here takes on a busy machine."""
 

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import json
+import os
 import socket
 import subprocess
-import sys
 import threading
 from collections.abc import Iterator
 from typing import Any
@@ -14,6 +14,7 @@ import pytest
 
 from aidl_lang.tools.cli import main
 from aidl_lang.tools.cli.serving import find_spec
+from aidl_server.lsp import serve
 from server.tests.lsp.editor import COMMAND, ENVIRONMENT
 from server.tests.lsp.test_in_flight import SLOW
 
@@ -58,11 +59,11 @@ class Wire:
         document = {"uri": uri, "languageId": "aidl", "version": 1, "text": text}
         self.send(method="textDocument/didOpen", params={"textDocument": document})
 
-    def diagnostics(self) -> list[dict[str, Any]]:
-        """What is told next."""
-        while (told := self.read()).get("method") != "textDocument/publishDiagnostics":
+    def diagnostics(self, uri: str) -> list[dict[str, Any]]:
+        """What is told next of a text."""
+        while (told := self.read().get("params", {})).get("uri") != uri or "diagnostics" not in told:
             pass
-        return told["params"]["diagnostics"]
+        return told["diagnostics"]
 
 
 @pytest.fixture
@@ -103,26 +104,16 @@ def test_rules_are_kept_where_clients_break_them(server: subprocess.Popen[bytes]
     wire.send(method="$/cancelRequest", params={"id": "never"})
     wire.send(id=99, result={"surprise": True})
     wire.open("solid a { b = circle(raduis: 3) }", "http://[not a uri")
-    assert [d["code"] for d in wire.diagnostics()] == ["E0324"]
-    wire.send(id=10, method="shutdown")
-    assert wire.answer(10)["result"] is None
-    wire.send(id=11, method="shutdown")
-    assert wire.answer(11)["error"]["code"] == -32600
-    wire.send(method="exit")
-    assert server.wait(SECONDS) == 0
-    assert b"Traceback" not in server.stderr.read()
-
-
-def test_shutting_down_does_not_wait_for_a_solve(server: subprocess.Popen[bytes]) -> None:
-    wire = Wire(server.stdout, server.stdin)
-    wire.greet()
+    assert [d["code"] for d in wire.diagnostics("http://[not a uri")] == ["E0324"]
     wire.open(SLOW)
-    wire.diagnostics()  # of what was found without running it: by now it is being run
-    wire.send(id=1, method="aidl/preview", params={"uri": "untitled:a", "show": []})
-    wire.send(id=2, method="shutdown")
-    assert "result" in wire.answer(2)
+    wire.diagnostics("untitled:a")  # of what was found without running it: by now it is being run
+    wire.send(id=10, method="aidl/preview", params={"uri": "untitled:a", "show": []})
+    wire.send(id=11, method="shutdown")
+    assert wire.answer(11)["result"] is None
+    wire.send(id=12, method="shutdown")
+    assert wire.answer(12)["error"]["code"] == -32600
     wire.send(method="exit")
-    assert server.wait(SECONDS) == 0
+    assert server.wait(SECONDS) == 0  # without waiting for what is run
     assert b"Traceback" not in server.stderr.read()
 
 
@@ -147,7 +138,7 @@ def test_a_client_on_a_socket_that_counts_in_bytes() -> None:
             wire.greet(general={"positionEncodings": ["utf-8"]})
             text = "solid a { /* 🚀ü */ b = circle(raduis: 3) }"
             wire.open(text)
-            (wrong,) = wire.diagnostics()
+            (wrong,) = wire.diagnostics("untitled:a")
             character = len(text[: text.index("raduis")].encode())
             assert wrong["range"]["start"] == {"line": 0, "character": character}
             wire.send(method="exit")  # without a `shutdown`
@@ -179,14 +170,18 @@ def test_without_its_packages_it_says_what_to_install(
 
 
 def test_nothing_but_the_protocol_is_on_standard_output() -> None:
-    script = (
-        "import sys, os, asyncio\n"
-        "from aidl_server.lsp import serve as wire\n"
-        "incoming, outgoing = wire.claim_standard_streams()\n"
-        "print('stray'); sys.stdout.flush(); os.write(1, b'stray')\n"
-        "os.write(outgoing, os.read(incoming, 99)); assert sys.stdin.read() == ''\n"
-    )
-    done = subprocess.run(
-        [sys.executable, "-c", script], input=b"said", capture_output=True, env=ENVIRONMENT, check=True
-    )
-    assert (done.stdout, done.stderr.count(b"stray")) == (b"said", 2)
+    kept = [os.dup(stream) for stream in range(3)]
+    (incoming, told), (said, outgoing), (stray, error) = (os.pipe() for _ in range(3))
+    try:
+        for stream, of in enumerate((incoming, outgoing, error)):
+            os.dup2(of, stream)
+        claimed, claimed_out = serve.claim_standard_streams()
+        os.write(1, b"stray")
+        os.write(told, b"said")
+        os.write(claimed_out, os.read(claimed, 99))
+        assert (os.read(said, 99), os.read(stray, 99), os.read(0, 99)) == (b"said", b"stray", b"")
+    finally:
+        for stream, of in enumerate(kept):
+            os.dup2(of, stream)
+        for of in (*kept, incoming, told, said, outgoing, stray, error, claimed, claimed_out):
+            os.close(of)

@@ -25,6 +25,10 @@ class Pane:
     host: ScriptedHost
     complaints: list[str] = field(default_factory=list)
     """What the browser has to say: errors, and what the Content-Security-Policy stopped."""
+    dialogs: list[str] = field(default_factory=list)
+    """What asked before the page was left."""
+    still_for: object = None
+    """The module of tests for which it is as it was when it was loaded."""
 
     def shows(self, **changes: Any) -> None:
         """Send a picture and wait until it is shown: as the answer to who asks for it, else as news."""
@@ -47,10 +51,7 @@ class Pane:
         )
 
     def at(self, x: float, y: float) -> tuple[float, float]:
-        """Where on the page a point of the drawing is, as the browser has it."""
-        matrix = "one => { const m = one.getScreenCTM(); return [m.a, m.d, m.e, m.f] }"
-        a, d, e, f = self.page.eval_on_selector(".drawing", matrix)
-        return a * x + e, -d * y + f
+        return at(self.page, x, y)
 
     @property
     def scale(self) -> float:
@@ -78,6 +79,13 @@ class Pane:
 
     def find(self, selector: str) -> Locator:
         return self.page.locator(selector)
+
+
+def at(page: Page, x: float, y: float) -> tuple[float, float]:
+    """Where on the page a point of the drawing is, as the browser has it."""
+    matrix = "one => { const m = one.getScreenCTM(); return [m.a, m.d, m.e, m.f] }"
+    a, d, e, f = page.eval_on_selector(".drawing", matrix)
+    return a * x + e, -d * y + f
 
 
 def drawn(number: int) -> str:
@@ -128,7 +136,7 @@ def shared(browser: Browser) -> Iterator[Pane]:
     with ScriptedHost() as host:
         context = browser.new_context(viewport=VIEWPORT)
         pane = listened(context, host)
-        pane.page.on("dialog", lambda dialog: dialog.accept())  # what is unsaved is left
+        pane.page.on("dialog", lambda dialog: (pane.dialogs.append(dialog.type), dialog.accept()))
         yield pane
         context.close()
 
@@ -138,11 +146,13 @@ def load(pane: Pane) -> None:
     pane.host.drop()
     pane.host.forget()
     pane.complaints.clear()
+    pane.still_for = None
     pane.page.set_viewport_size(VIEWPORT)
     pane.page.emulate_media(color_scheme="light")
     pane.page.mouse.up()
     pane.page.mouse.move(0, 0)
     pane.page.goto(pane.host.url)
+    pane.dialogs.clear()
     pane.host.hears("aidl/preview")
     pane.shows()
 
@@ -156,24 +166,22 @@ def pane(shared: Pane) -> Iterator[Pane]:
     assert shared.complaints == []
 
 
-@pytest.fixture(scope="module")
-def loaded(shared: Pane) -> Pane:
-    load(shared)
-    return shared
-
-
 @pytest.fixture
-def still(loaded: Pane) -> Iterator[Pane]:
-    """The pane, loaded once for the tests of a module, which leave nothing open and unanswered."""
-    yield loaded
-    page, host = loaded.page, loaded.host
+def still(shared: Pane, request: pytest.FixtureRequest) -> Iterator[Pane]:
+    """The pane, loaded once for tests of a module, in a row, that leave nothing open and unanswered."""
+    page, host = shared.page, shared.host
+    if shared.still_for is not request.module:
+        load(shared)
+    shared.still_for = None
+    yield shared
     page.mouse.up()
     page.mouse.move(0, 0)
     page.evaluate("() => document.activeElement.blur()")
     page.keyboard.press("Escape")
-    loaded.shows()
+    shared.shows()
     page.keyboard.press("f")
     hovers = host.of("aidl/hover")
     host.wait(lambda: not hovers or host.of("aidl/hover")[-1]["place"] is None)
     host.forget()
-    assert loaded.complaints == []
+    assert shared.complaints == []
+    shared.still_for = request.module

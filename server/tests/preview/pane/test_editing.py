@@ -50,41 +50,125 @@ def drags(pane: Pane) -> list[tuple[list[float], bool]]:
     ]
 
 
-# Sliders
+# Fields
 
 
-def test_the_places_where_the_kind_changes_are_marked_until_the_text_changes(pane: Pane) -> None:
-    button = pane.page.get_by_role("button", name="Mark where the kind changes")
-    marks = pane.find("#knobs-list .turn")
-    settled = pane.page.evaluate("JSON.parse(document.body.dataset.shown)[1]")
+def test_what_is_typed_is_worked_out_by_the_host(still: Pane) -> None:
+    for count, text in enumerate(["120", "1e9", "99,5", " 80+20 ", "12cm", "abc", "−7"], 1):
+        field(still).fill(text)
+        field(still).press("Enter")
+        asked = {"uri": URI, "path": "width", "value": text.strip()}
+        assert still.host.hears("aidl/setKnob", count) == asked
+        still.shows(knobs=[knob(value=100 + count)])
+        expect(field(still)).to_have_value(str(100 + count))
+
+
+def test_why_a_number_is_refused_is_told_beside_it(still: Pane) -> None:
+    still.host.refusal = "`width` cannot be `300`: that is outside its range 60..200 mm"
+    field(still).fill("30cm")
+    field(still).press("Enter")
+    refusal = still.find(".knob .refusal")
+    expect(refusal).to_have_text("width cannot be 300: that is outside its range 60..200 mm")
+    expect(field(still)).to_have_value("30cm")
+    expect(still.find(".toast")).to_have_count(0)
+    still.shows()  # another picture of the same text
+    expect(refusal).to_be_visible()
+    field(still).press("Escape")
+    expect(refusal).to_be_hidden()
+    expect(field(still)).to_have_value("100")
+
+
+def test_choices_truths_and_texts(still: Pane) -> None:
+    still.shows(
+        knobs=[
+            knob(path="bolt", name="bolt", kind="choice", value="m4", choices=["m4", "m5"], unit=""),
+            knob(path="size", name="size", kind="choice", value=4, choices=[4, 5, 6]),
+            knob(path="a.feet", name="feet", kind="truth", value=False, unit=""),
+            knob(path="label", name="label", kind="text", value="hello", unit=""),
+        ]
+    )
+    still.page.get_by_label("bolt", exact=True).select_option("m5")
+    still.page.get_by_label("size", exact=True).select_option("6 mm")
+    still.page.get_by_role("switch", name="feet").check()
+    field(still, "label").fill("it's")
+    field(still, "label").press("Enter")
+    still.host.wait(lambda: len([1 for _, final in knobs(still) if final]) == 4)
+    assert [value for value, final in knobs(still) if final] == ["m5", 6, True, "it's"]
+    assert [params["path"] for params in still.host.of("aidl/setKnob")] == ["bolt", "size", "a.feet", "label"]
+
+
+def test_a_picture_keeps_the_focus_and_what_is_being_typed(still: Pane) -> None:
+    field(still).fill("170")
+    still.shows(knobs=[knob(value=110)])
+    expect(field(still)).to_have_value("170")
+    field(still).press("Escape")
+    expect(field(still)).to_have_value("110")
+    field(still).select_text()
+    still.shows(knobs=[knob(value=150)])
+    expect(field(still)).to_have_value("150")
+    still.page.keyboard.type("180")  # over what was selected
+    expect(field(still)).to_have_value("180")
+    field(still).press("Escape")
+    field(still).focus()
+    still.shows(knobs=[knob(), knob(path="depth", name="depth")])
+    still.shows(knobs=[knob(), knob(path="depth", name="depth", value=70)])
+    expect(field(still, "depth")).to_have_value("70")
+    field(still, "depth").focus()
+    still.shows(knobs=[knob(), knob(path="depth", name="depth", value=80)])
+    expect(field(still, "depth")).to_be_focused()
+
+
+def test_the_places_where_the_kind_changes_are_marked_until_the_text_changes(still: Pane) -> None:
+    button = still.page.get_by_role("button", name="Mark where the kind changes")
+    marks = still.find("#knobs-list .turn")
+    settled = still.page.evaluate("JSON.parse(document.body.dataset.shown)[1]")
     button.click()
     expect(button).to_be_disabled()
     fixes = [{"title": "let the range of `width` end at 149mm"}]
     turns = [{"value": 150, "message": "at `width = 150mm` it breaks", "fixes": fixes}]
     answer = {"summary": "1 param walked", "walked": [{"param": "width", "turns": turns}]}
-    pane.host.answer("aidl/ranges", answer)
+    still.host.answer("aidl/ranges", answer)
     expect(marks).to_have_count(1)
     expect(marks).to_have_attribute(
         "title", "at width = 150mm it breaks\nlet the range of width end at 149mm"
     )
-    expect(pane.find("#walked")).to_have_text("1 param walked")
-    assert pane.middle("#knobs-list .turn")[0] == pytest.approx(along(pane, 150)[0], abs=1)
-    pane.shows(tried=True, version=settled, knobs=[knob(value=120)])
+    expect(still.find("#walked")).to_have_text("1 param walked")
+    assert still.middle("#knobs-list .turn")[0] == pytest.approx(along(still, 150)[0], abs=1)
+    still.shows(tried=True, version=settled, knobs=[knob(value=120)])
     expect(marks).to_have_count(1)
-    pane.shows()
+    still.shows()
     expect(marks).to_have_count(0)
-    expect(pane.find("#walked")).to_be_hidden()
+    expect(still.find("#walked")).to_be_hidden()
     button.click()
-    pane.shows()
-    pane.host.answer("aidl/ranges", answer)
+    still.shows()
+    still.host.answer("aidl/ranges", answer)
     expect(button).to_be_enabled()
     expect(marks).to_have_count(0)  # they are of a text before
     button.click()
-    pane.host.answer("aidl/ranges", error="the text has changed", code=-32801)
+    still.host.answer("aidl/ranges", error="the text has changed", code=-32801)
     expect(button).to_be_enabled()
-    expect(pane.find(".toast")).to_have_count(0)
-    pane.shows(knobs=[knob(low=None, high=None)])
+    expect(still.find(".toast")).to_have_count(0)
+    still.shows(knobs=[knob(low=None, high=None)])
     expect(button).to_be_hidden()
+
+
+def test_points_appear_when_their_element_is_pointed_at(still: Pane) -> None:
+    dot = still.find(".handle")
+    expect(dot).to_be_hidden()
+    still.move(-40, 10)
+    expect(dot).to_be_visible()
+    still.move(20, 5)  # on the point itself
+    expect(dot).to_be_visible()
+    assert still.host.hears("aidl/hover", 2)["place"] == where(RIM)
+    still.move(-54, 0)
+    expect(dot).to_be_hidden()
+    still.page.get_by_role("button", name="Points", exact=True).click()
+    expect(dot).to_be_visible()
+    still.page.keyboard.press("p")
+    expect(dot).to_be_hidden()
+
+
+# Sliders
 
 
 def test_a_slider_asks_for_one_thing_at_a_time_and_next_for_the_newest(pane: Pane) -> None:
@@ -150,31 +234,6 @@ def test_a_slider_by_keys_writes_when_the_key_is_let_go(pane: Pane) -> None:
     pane.host.wait(lambda: (200, True) in knobs(pane))
 
 
-def test_what_is_typed_is_worked_out_by_the_host(pane: Pane) -> None:
-    for count, text in enumerate(["120", "1e9", "99,5", " 80+20 ", "12cm", "abc", "−7"], 1):
-        field(pane).fill(text)
-        field(pane).press("Enter")
-        asked = {"uri": URI, "path": "width", "value": text.strip()}
-        assert pane.host.hears("aidl/setKnob", count) == asked
-        pane.shows(knobs=[knob(value=100 + count)])
-        expect(field(pane)).to_have_value(str(100 + count))
-
-
-def test_why_a_number_is_refused_is_told_beside_it(pane: Pane) -> None:
-    pane.host.refusal = "`width` cannot be `300`: that is outside its range 60..200 mm"
-    field(pane).fill("30cm")
-    field(pane).press("Enter")
-    refusal = pane.find(".knob .refusal")
-    expect(refusal).to_have_text("width cannot be 300: that is outside its range 60..200 mm")
-    expect(field(pane)).to_have_value("30cm")
-    expect(pane.find(".toast")).to_have_count(0)
-    pane.shows()  # another picture of the same text
-    expect(refusal).to_be_visible()
-    field(pane).press("Escape")
-    expect(refusal).to_be_hidden()
-    expect(field(pane)).to_have_value("100")
-
-
 def test_params_that_a_drag_changes_are_shown(pane: Pane) -> None:
     x, y = pane.middle(".handle")
     pane.page.get_by_role("button", name="Points").click()
@@ -199,25 +258,6 @@ def test_what_is_wrong_is_looked_into_when_the_slider_rests(pane: Pane) -> None:
     pane.page.mouse.up()
 
 
-def test_choices_truths_and_texts(pane: Pane) -> None:
-    pane.shows(
-        knobs=[
-            knob(path="bolt", name="bolt", kind="choice", value="m4", choices=["m4", "m5"], unit=""),
-            knob(path="size", name="size", kind="choice", value=4, choices=[4, 5, 6]),
-            knob(path="a.feet", name="feet", kind="truth", value=False, unit=""),
-            knob(path="label", name="label", kind="text", value="hello", unit=""),
-        ]
-    )
-    pane.page.get_by_label("bolt", exact=True).select_option("m5")
-    pane.page.get_by_label("size", exact=True).select_option("6 mm")
-    pane.page.get_by_role("switch", name="feet").check()
-    field(pane, "label").fill("it's")
-    field(pane, "label").press("Enter")
-    pane.host.wait(lambda: len([1 for _, final in knobs(pane) if final]) == 4)
-    assert [value for value, final in knobs(pane) if final] == ["m5", 6, True, "it's"]
-    assert [params["path"] for params in pane.host.of("aidl/setKnob")] == ["bolt", "size", "a.feet", "label"]
-
-
 @pytest.mark.parametrize("changes", [{"editable": False}, {"range": None, "uri": None}])
 def test_what_is_not_in_the_text_can_only_be_tried(pane: Pane, changes: dict[str, Any]) -> None:
     pane.shows(knobs=[knob(**changes), knob(path="depth", name="depth")])
@@ -236,27 +276,6 @@ def test_what_is_not_in_the_text_can_only_be_tried(pane: Pane, changes: dict[str
     expect(pane.find("#status-freedom")).to_have_text("2 degrees of freedom")
 
 
-def test_a_picture_keeps_the_focus_and_what_is_being_typed(pane: Pane) -> None:
-    field(pane).fill("170")
-    pane.shows(knobs=[knob(value=110)])
-    expect(field(pane)).to_have_value("170")
-    field(pane).press("Escape")
-    expect(field(pane)).to_have_value("110")
-    field(pane).select_text()
-    pane.shows(knobs=[knob(value=150)])
-    expect(field(pane)).to_have_value("150")
-    pane.page.keyboard.type("180")  # over what was selected
-    expect(field(pane)).to_have_value("180")
-    field(pane).press("Escape")
-    field(pane).focus()
-    pane.shows(knobs=[knob(), knob(path="depth", name="depth")])
-    pane.shows(knobs=[knob(), knob(path="depth", name="depth", value=70)])
-    expect(field(pane, "depth")).to_have_value("70")
-    field(pane, "depth").focus()
-    pane.shows(knobs=[knob(), knob(path="depth", name="depth", value=80)])
-    expect(field(pane, "depth")).to_be_focused()
-
-
 # Points
 
 
@@ -265,22 +284,6 @@ def grab(pane: Pane, x: float, y: float) -> None:
     pane.page.get_by_role("button", name="Points", exact=True).click()
     pane.move(x, y)
     pane.page.mouse.down()
-
-
-def test_points_appear_when_their_element_is_pointed_at(pane: Pane) -> None:
-    dot = pane.find(".handle")
-    expect(dot).to_be_hidden()
-    pane.move(-40, 10)
-    expect(dot).to_be_visible()
-    pane.move(20, 5)  # on the point itself
-    expect(dot).to_be_visible()
-    assert pane.host.hears("aidl/hover", 2)["place"] == where(RIM)
-    pane.move(-54, 0)
-    expect(dot).to_be_hidden()
-    pane.page.get_by_role("button", name="Points", exact=True).click()
-    expect(dot).to_be_visible()
-    pane.page.keyboard.press("p")
-    expect(dot).to_be_hidden()
 
 
 def test_a_dragged_point_tells_millimetres(pane: Pane) -> None:

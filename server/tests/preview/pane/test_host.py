@@ -8,7 +8,7 @@ import json
 from playwright.sync_api import expect
 
 from server.tests.preview.pane.conftest import Pane
-from server.tests.preview.pane.messages import EXPORTS, URI, picture, problem, words
+from server.tests.preview.pane.messages import EXPORTS, URI, picture, problem
 
 CODE = """
 window.sent = [];
@@ -188,13 +188,9 @@ def test_everything_fits_into_narrow_windows(pane: Pane) -> None:
             assert box["height"] > (150 if part == "#stage" else 20)
 
 
-def test_the_drawing_is_in_sight_beside_text_problems_and_sliders(open_pane) -> None:
-    pane = open_pane(viewport={"width": 420, "height": 480})
-    pane.host.hears("aidl/preview")
-    pane.host.tell("aidl/text", words())
+def test_the_drawing_is_in_sight_beside_text_problems_and_sliders(pane: Pane) -> None:
+    pane.writes()
     pane.shows(problems=[problem(message="a `long` " * 30)])
-    pane.find("#source-toggle").click()
-    expect(pane.find(".cm-line").first).to_be_visible()
     for height in (480, 640, 800):
         pane.page.set_viewport_size({"width": 420, "height": height})
         for part in ("#source", "#knobs"):

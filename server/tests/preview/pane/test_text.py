@@ -20,6 +20,13 @@ def pane(pane: Pane) -> Pane:
     return pane
 
 
+@pytest.fixture
+def text(still: Pane) -> Pane:
+    """The same for tests that type nothing."""
+    still.writes()
+    return still
+
+
 def type_at_end(pane: Pane, line: int, text: str) -> None:
     pane.find(".cm-line").nth(line).click()
     pane.page.keyboard.press("End")
@@ -33,6 +40,79 @@ def typed(pane: Pane, count: int = 1) -> dict[str, Any]:
 def insertion(line: int, character: int, text: str) -> dict[str, Any]:
     at = {"line": line, "character": character}
     return {"start": at, "end": at, "text": text}
+
+
+def of_one_version(pane: Pane, **changes: Any) -> None:
+    """Tells of the text and its picture."""
+    version = picture()["version"]
+    pane.host.tell("aidl/text", words(version=version))
+    pane.shows(version=version, **changes)
+
+
+def test_undo_and_redo_by_buttons_and_keys(text: Pane) -> None:
+    undo, redo = (text.page.get_by_role("button", name=name) for name in ("Undo", "Redo"))
+    expect(undo).to_be_disabled()
+    text.host.tell("aidl/text", words(None, undo="Set width", redo="Drag"))
+    expect(undo).to_have_attribute("title", "Undo: Set width (Ctrl+Z)")
+    expect(redo).to_have_attribute("title", "Redo: Drag (Ctrl+Y)")
+    undo.click()
+    redo.click()
+    text.host.hears("aidl/redo")
+    text.find("#stage").focus()
+    for key in ("Control+z", "Control+Shift+z", "Control+y"):
+        text.page.keyboard.press(key)
+    text.host.hears("aidl/redo", 3)
+    text.host.hears("aidl/undo", 2)
+    slider = text.find("#knobs-list input[type=range]").first
+    slider.focus()
+    text.page.keyboard.press("Control+z")
+    text.host.hears("aidl/undo", 3)
+    text.find(".cm-content").focus()
+    text.page.keyboard.press("Control+z")
+    text.host.hears("aidl/undo", 4)
+    text.host.refusal = "the file was changed elsewhere"
+    undo.click()
+    expect(text.find(".toast")).to_contain_text("the file was changed elsewhere")
+    text.page.get_by_role("button", name="Close").click()
+
+
+def test_a_file_that_others_changed_is_told_and_chosen(text: Pane) -> None:
+    contested = text.find("#contested")
+    expect(contested).to_be_hidden()
+    text.host.tell("aidl/text", words(None, saved=False, contested=True))
+    expect(contested).to_be_visible()
+    text.page.get_by_role("button", name="Save mine over it").click()
+    assert text.host.hears("aidl/save") == {"uri": URI, "anyway": True}
+    text.page.get_by_role("button", name="Take the file").click()
+    text.host.hears("aidl/takeFile")
+
+
+def test_what_is_wrong_is_underlined(text: Pane) -> None:
+    of_one_version(text, problems=[problem(range=place(1, 4, 9), message="no `such` thing")])
+    wrong = text.find(".cm-lintRange-error")
+    expect(wrong).to_have_text(LINES[1][4:9])
+    wrong.hover()
+    expect(text.find(".cm-diagnostic")).to_contain_text("no `such` thing")
+    text.shows(problems=[])  # of a text that is not here yet
+    expect(wrong).to_have_count(1)
+    of_one_version(text, problems=[])
+    expect(wrong).to_have_count(0)
+
+
+def test_the_text_follows_the_pointer_and_back(text: Pane) -> None:
+    expect(text.find(".cm-line")).to_have_text(LINES)
+    text.move(20, 15)
+    expect(text.find(".cm-line.marked")).to_have_text([LINES[5]])
+    text.find(".cm-line").nth(3).click()
+    assert text.outlined("selected") == [drawn(OUTLINE)]
+    text.find(".cm-line").nth(6).click()
+    expect(text.find(".mark.selected .line")).to_have_count(1)
+    assert text.outlined("selected") == [drawn(3)]  # the innermost whose place has this line
+    button = text.page.get_by_role("button", name="Text")
+    button.click()
+    expect(text.find("#source")).to_be_hidden()
+    expect(text.find("#stage")).to_be_visible()
+    button.click()
 
 
 def test_what_is_typed_is_told_and_not_saved(pane: Pane) -> None:
@@ -96,64 +176,6 @@ def test_another_host_gets_what_the_first_did_not_save(pane: Pane) -> None:
     assert typed(pane, 2) == {"uri": URI, "version": 1, "changes": [insertion(0, len(LINES[0]), "w")]}
 
 
-def test_undo_and_redo_by_buttons_and_keys(pane: Pane) -> None:
-    undo, redo = (pane.page.get_by_role("button", name=name) for name in ("Undo", "Redo"))
-    expect(undo).to_be_disabled()
-    pane.host.tell("aidl/text", words(None, undo="Set width", redo="Drag"))
-    expect(undo).to_have_attribute("title", "Undo: Set width (Ctrl+Z)")
-    expect(redo).to_have_attribute("title", "Redo: Drag (Ctrl+Y)")
-    undo.click()
-    redo.click()
-    pane.host.hears("aidl/redo")
-    pane.find("#stage").focus()
-    for key in ("Control+z", "Control+Shift+z", "Control+y"):
-        pane.page.keyboard.press(key)
-    pane.host.hears("aidl/redo", 3)
-    pane.host.hears("aidl/undo", 2)
-    slider = pane.find("#knobs-list input[type=range]").first
-    slider.focus()
-    pane.page.keyboard.press("Control+z")
-    pane.host.hears("aidl/undo", 3)
-    pane.find(".cm-content").focus()
-    pane.page.keyboard.press("Control+z")
-    pane.host.hears("aidl/undo", 4)
-    pane.host.refusal = "the file was changed elsewhere"
-    undo.click()
-    expect(pane.find(".toast")).to_contain_text("the file was changed elsewhere")
-
-
-def test_a_file_that_others_changed_is_told_and_chosen(pane: Pane) -> None:
-    contested = pane.find("#contested")
-    expect(contested).to_be_hidden()
-    pane.host.tell("aidl/text", words(None, saved=False, contested=True))
-    expect(contested).to_be_visible()
-    pane.page.get_by_role("button", name="Save mine over it").click()
-    assert pane.host.hears("aidl/save") == {"uri": URI, "anyway": True}
-    pane.page.get_by_role("button", name="Take the file").click()
-    pane.host.hears("aidl/takeFile")
-
-
-def of_one_version(pane: Pane, **changes: Any) -> int:
-    """A text and its picture; returns their version."""
-    version: int = picture()["version"]
-    pane.host.tell("aidl/text", words(version=version))
-    pane.shows(version=version, **changes)
-    return version
-
-
-def test_what_is_wrong_is_underlined(pane: Pane) -> None:
-    version = of_one_version(pane, problems=[problem(range=place(1, 4, 9), message="no `such` thing")])
-    wrong = pane.find(".cm-lintRange-error")
-    expect(wrong).to_have_text(LINES[1][4:9])
-    wrong.hover()
-    expect(pane.find(".cm-diagnostic")).to_contain_text("no `such` thing")
-    pane.shows(version=version + 1000, problems=[])  # of a text that is not here yet
-    expect(wrong).to_have_count(1)
-    pane.host.tell("aidl/text", words(version=version + 1001))
-    pane.shows(version=version + 1001, problems=[])
-    expect(wrong).to_have_count(0)
-
-
 def test_a_problem_leads_to_its_place_in_the_text(pane: Pane) -> None:
     of_one_version(pane, problems=[problem(range=place(3, 8, 15))])
     pane.find("#problems-list").get_by_role("button", name="line 4").click()
@@ -173,61 +195,29 @@ def test_keys_of_the_pane_are_letters_in_the_text(pane: Pane) -> None:
     expect(pane.find(".cm-content")).not_to_be_focused()
 
 
-@pytest.mark.parametrize("line", ["    param depth = 20", "    param depth = 20m", "    r = rect"])
-def test_enter_is_a_new_line_whatever_is_offered(pane: Pane, line: str) -> None:
-    type_at_end(pane, 1, f"\n{line.strip()}")
-    offered = pane.find(".cm-tooltip-autocomplete")
-    if line.endswith("0"):
-        pane.page.wait_for_timeout(300)  # none opens
-        expect(offered).to_be_hidden()
-    else:
-        expect(offered).to_be_visible()
-    pane.page.keyboard.press("Enter")
-    pane.page.keyboard.type("x")
-    expect(pane.find(".cm-line").nth(2)).to_have_text(line)
-    expect(pane.find(".cm-line").nth(3)).to_have_text("    x")
-
-
-def test_enter_takes_what_was_moved_to(pane: Pane) -> None:
-    type_at_end(pane, 1, "\nr = rectang")
-    expect(pane.find(".cm-tooltip-autocomplete")).to_be_visible()
-    pane.page.wait_for_timeout(200)  # a list that has just opened takes no keys
-    pane.page.keyboard.press("ArrowDown")
-    pane.page.keyboard.press("Enter")
-    expect(pane.find(".cm-line").nth(2)).to_contain_text("rectangle(")
-
-
-def test_a_page_with_unsaved_text_asks_before_it_is_left(open_pane: Any) -> None:
-    pane = open_pane()
-    pane.host.hears("aidl/preview")
-    pane.writes()
-    asked: list[str] = []
-    pane.page.on("dialog", lambda dialog: (asked.append(dialog.type), dialog.accept()))
+def test_a_page_with_unsaved_text_asks_before_it_is_left(pane: Pane) -> None:
     type_at_end(pane, 0, "u")
     typed(pane)
-    with pane.page.expect_event("close"):
-        pane.page.close(run_before_unload=True)
-    assert asked == ["beforeunload"]
+    pane.page.reload()
+    assert pane.dialogs == ["beforeunload"]
 
 
-def test_there_is_no_text_where_the_host_tells_none(open_pane: Any) -> None:
-    pane = open_pane()
-    pane.host.hears("aidl/preview")
-    pane.shows()
-    for part in ("source", "source-toggle", "history"):
-        expect(pane.find(f"#{part}")).to_be_hidden()
-    assert not any(path.endswith("editor.js") for path in pane.host.requests)
-
-
-def test_the_text_follows_the_pointer_and_back(pane: Pane) -> None:
-    expect(pane.find(".cm-line")).to_have_text(LINES)
-    pane.move(20, 15)
-    expect(pane.find(".cm-line.marked")).to_have_text([LINES[5]])
-    pane.find(".cm-line").nth(3).click()
-    assert pane.outlined("selected") == [drawn(OUTLINE)]
-    pane.find(".cm-line").nth(6).click()
-    expect(pane.find(".mark.selected .line")).to_have_count(1)
-    assert pane.outlined("selected") == [drawn(3)]  # the innermost whose place has this line
-    pane.page.get_by_role("button", name="Text").click()
-    expect(pane.find("#source")).to_be_hidden()
-    expect(pane.find("#stage")).to_be_visible()
+def test_enter_is_a_new_line_unless_something_offered_was_chosen(pane: Pane) -> None:
+    offered, lines = pane.find(".cm-tooltip-autocomplete"), pane.find(".cm-line")
+    for row, (line, opens) in enumerate([("r = rect", True), ("param b = 2m", True), ("param c = 2", False)]):
+        type_at_end(pane, 1 + 2 * row, f"\n{line}")
+        if opens:
+            expect(offered).to_be_visible()
+        else:
+            pane.page.wait_for_timeout(300)
+            expect(offered).to_be_hidden()
+        pane.page.keyboard.press("Enter")
+        pane.page.keyboard.type("x")
+        expect(lines.nth(2 + 2 * row)).to_have_text(f"    {line}")
+        expect(lines.nth(3 + 2 * row)).to_have_text("    x")
+    pane.page.keyboard.type("\nr = rectang")
+    expect(offered).to_be_visible()
+    pane.page.wait_for_timeout(100)  # a list that has just opened takes no keys
+    pane.page.keyboard.press("ArrowDown")
+    pane.page.keyboard.press("Enter")
+    expect(lines.nth(8)).to_contain_text("rectangle(")

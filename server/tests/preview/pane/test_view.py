@@ -107,10 +107,7 @@ def test_keys_move_and_zoom(pane: Pane) -> None:
     assert pane.scale == pytest.approx(before / 1.25)
 
 
-def test_two_fingers_zoom(open_pane) -> None:
-    pane = open_pane(has_touch=True)
-    pane.host.hears("aidl/preview")
-    pane.shows()
+def test_two_fingers_zoom(pane: Pane) -> None:
     before = pane.scale
     x, y = pane.at(10, 5)
     client = pane.page.context.new_cdp_session(pane.page)
@@ -323,3 +320,11 @@ def test_free_directions(pane: Pane) -> None:
     assert pane.find(".motion").count() == 0
     button.click()
     pane.host.hears("aidl/preview", 2)
+
+
+def test_there_is_no_text_where_the_host_tells_none(pane: Pane) -> None:
+    for part in ("source", "source-toggle", "history"):
+        expect(pane.find(f"#{part}")).to_be_hidden()
+    loaded = pane.page.evaluate("() => performance.getEntriesByType('resource').map(one => one.name)")
+    assert any(name.endswith("/view.js") for name in loaded)
+    assert not any(name.endswith("/editor.js") for name in loaded)
