@@ -5,11 +5,10 @@ import math
 import pytest
 
 from aidl_lang.geometry.curves import Vec
-from aidl_lang.syntax.tables import tokenize
 from aidl_server.ide.dragging import Dragged, Handle, drag, handles
 from aidl_server.ide.references import CannotError
 from aidl_server.ide.workspace import View, applied, look, run
-from server.tests.ide.conftest import seen, solved_at
+from server.tests.ide.conftest import besides_numbers, seen, solved_at
 from tests.amount import TRIES_ALL
 from tests.compiled import EXAMPLES
 
@@ -60,11 +59,6 @@ def geometry(view: View, path: str):
     assert view.outcome.status == "solved"
     parts = (p for s in view.outcome.model.root.walk() for g in s.geometry for p in g.walk())
     return next(part for part in parts if part.path == path)
-
-
-def besides_numbers(text: str) -> list[str]:
-    words = [text[t.start : t.end] for t in tokenize(seen(text).source).tokens]
-    return [w for w in words if not w[:1].isdigit() and w != "-"]
 
 
 # --- First guesses -------------------------------------------------------------------------------

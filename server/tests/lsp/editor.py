@@ -116,16 +116,6 @@ class Editor(LanguageClient):
         )
         return list(last.diagnostics)
 
-    async def rid_of_errors(self, uri: str) -> None:
-        """Waits until the text as it is now has no errors: a file that it imports may change after it."""
-
-        def is_rid() -> bool:
-            of_now = [t for t in self.told if t.uri == uri and t.version == self.versions[uri]]
-            worst = types.DiagnosticSeverity.Error
-            return bool(of_now) and all(d.severity != worst for d in of_now[-1].diagnostics)
-
-        await self.until(is_rid)
-
     async def status(self, uri: str) -> dict[str, Any]:
         """What came of the text as it is now."""
         version = self.versions[uri]

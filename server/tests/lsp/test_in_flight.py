@@ -82,7 +82,6 @@ async def test_after_many_quick_edits_the_diagnostics_are_those_of_the_text(
     assert shown == sorted(shown)
     assert not editor.messages
     await editor.ask("aidl/previewClose", uri=uri)
-    editor.close(uri)
 
 
 async def test_a_broken_program_completes_and_keeps_its_picture(editor: Editor) -> None:
@@ -105,7 +104,6 @@ async def test_a_broken_program_completes_and_keeps_its_picture(editor: Editor) 
     editor.become(uri, TELEPHONE.read_text("utf-8"))
     again = await editor.picture(uri)
     assert (again["status"], again["stale"], again["svg"]) == ("solved", False, good["svg"])
-    editor.close(uri)
 
 
 async def test_a_request_can_be_taken_back(editor: Editor) -> None:
@@ -118,7 +116,6 @@ async def test_a_request_can_be_taken_back(editor: Editor) -> None:
     with pytest.raises(JsonRpcException) as refused:
         await asked
     assert refused.value.code == types.LSPErrorCodes.RequestCancelled.value
-    editor.close(uri)
 
 
 async def test_others_need_not_wait_for_a_slow_program(editor: Editor) -> None:
@@ -133,8 +130,6 @@ async def test_others_need_not_wait_for_a_slow_program(editor: Editor) -> None:
     assert [d.code for d in await editor.found(slow)] == ["E0324"]
     editor.become(slow, "solid a { b = circle(radius: 3) }")
     assert (await editor.status(slow))["status"] == "solved"
-    for uri in (slow, quick):
-        editor.close(uri)
 
 
 async def test_closing_ends_what_is_done_for_a_text(editor: Editor) -> None:
@@ -146,7 +141,6 @@ async def test_closing_ends_what_is_done_for_a_text(editor: Editor) -> None:
     other = editor.open("untitled:after", "solid a { b = circle(radius: 3) }")
     assert await editor.found(other) == []
     assert not [s for s in editor.statuses if s["uri"] == uri]
-    editor.close(other)
 
 
 async def test_only_the_newest_attempt_is_made(editor: Editor) -> None:
@@ -163,7 +157,6 @@ async def test_only_the_newest_attempt_is_made(editor: Editor) -> None:
     assert {each.code for each in others} == {types.LSPErrorCodes.RequestCancelled.value}
     assert (await editor.ask("aidl/preview", uri=uri, show=[]))["tried"] is False
     await editor.ask("aidl/previewClose", uri=uri)
-    editor.close(uri)
 
 
 async def test_an_attempt_is_given_up_where_its_viewer_edits(editor: Editor) -> None:
@@ -181,7 +174,6 @@ async def test_an_attempt_is_given_up_where_its_viewer_edits(editor: Editor) -> 
     assert given_up.value.code == types.LSPErrorCodes.RequestCancelled.value
     assert (await tries["other"])["tried"]
     assert not (await refused)["applied"]
-    editor.close(uri)
 
 
 async def test_viewers_of_one_document_see_what_each_asked_for(editor: Editor) -> None:
@@ -204,7 +196,6 @@ async def test_viewers_of_one_document_see_what_each_asked_for(editor: Editor) -
     await editor.until(lambda: [p for p in editor.pictures if p["uri"] == uri and p["version"] == version])
     await editor.status(uri)
     assert {p["viewer"] for p in editor.pictures if p["uri"] == uri and p["version"] == version} == {"named"}
-    editor.close(uri)
 
 
 async def test_edits_of_the_text_as_it_is_follow_one_another(editor: Editor) -> None:
@@ -214,7 +205,6 @@ async def test_edits_of_the_text_as_it_is_follow_one_another(editor: Editor) -> 
     assert await asyncio.gather(*edits) == [{"applied": True}] * 3
     assert "param w = 40 in" in editor.texts[uri]
     assert editor.versions[uri] == 4
-    editor.close(uri)
 
 
 async def test_an_answer_that_edits_is_not_given_for_a_text_that_has_changed(editor: Editor) -> None:
@@ -232,7 +222,6 @@ async def test_an_answer_that_edits_is_not_given_for_a_text_that_has_changed(edi
     text = editor.texts[uri]
     edits = await editor.query("formatting", uri, options=types.FormattingOptions(4, True))
     assert edited(text, edits) == pipeline.formatted(SourceFile("a", text))[0]
-    editor.close(uri)
 
 
 async def test_what_no_text_has_is_passed_over(editor: Editor) -> None:
@@ -253,4 +242,3 @@ async def test_what_no_text_has_is_passed_over(editor: Editor) -> None:
     editor.text_document_did_open(types.DidOpenTextDocumentParams(again))
     editor.versions[uri] = 9
     assert [d.code for d in await editor.found(uri)] == ["E0324"]
-    editor.close(uri)

@@ -47,7 +47,6 @@ async def test_an_example_has_the_diagnostics_that_the_command_gives(editor: Edi
     status = await editor.status(uri)
     assert (status["status"], status["degrees"]) == ("solved", compiled.model.degrees)
     editor.close(uri)
-    await editor.until(lambda: editor.told[-1].uri == uri and not editor.told[-1].diagnostics)
 
 
 async def test_diagnostics_lead_to_their_pages_and_places(editor: Editor) -> None:
@@ -62,7 +61,6 @@ async def test_diagnostics_lead_to_their_pages_and_places(editor: Editor) -> Non
     assert page.startswith("file:///")
     assert page.endswith("/docs/diagnostics/W0201.md")
     assert resources.page("W0201")
-    editor.close(uri)
 
 
 async def test_related_places_are_told(editor: Editor) -> None:
@@ -70,7 +68,6 @@ async def test_related_places_are_told(editor: Editor) -> None:
     (twice,) = [d for d in await editor.found(uri) if d.related_information]
     places = [(r.location.uri, r.location.range.start.line) for r in twice.related_information]
     assert (uri, 1) in places
-    editor.close(uri)
 
 
 async def test_fixes_mend_what_is_wrong(editor: Editor) -> None:
@@ -83,7 +80,6 @@ async def test_fixes_mend_what_is_wrong(editor: Editor) -> None:
     editor.apply(fix.edit)
     assert editor.texts[uri] == "solid a { b = circle(radius: 3) }\n"
     assert await editor.found(uri) == []
-    editor.close(uri)
 
 
 async def test_actions_are_worked_out_when_they_are_chosen(editor: Editor) -> None:
@@ -98,7 +94,6 @@ async def test_actions_are_worked_out_when_they_are_chosen(editor: Editor) -> No
     editor.apply(action.edit)
     assert editor.texts[uri].count("radius") == 2
     assert "raduis" not in editor.texts[uri]
-    editor.close(uri)
 
 
 async def test_solved_values_are_written_back(editor: Editor) -> None:
@@ -124,7 +119,6 @@ async def test_fixes_are_applied_by_command(editor: Editor) -> None:
             await editor.workspace_execute_command_async(
                 types.ExecuteCommandParams("aidl.applyFixes", arguments=arguments)
             )
-    editor.close(uri)
 
 
 async def test_definitions_here_and_in_the_library(editor: Editor) -> None:
@@ -277,15 +271,12 @@ async def test_colours(editor: Editor) -> None:
 
 async def test_completion_knows_what_follows_a_dot(editor: Editor) -> None:
     uri = await telephone(editor)
-    text = editor.texts[uri]
-    at = text.index("bottom_left + (16, 0)")
-    made = await editor.query("completion", uri, position=place(text, at))
-    labels = [item.label for item in made.items]
-    assert "bottom_left" in labels
-    assert "center" in labels
-    assert "solid" not in labels
-    item = await editor.completion_item_resolve_async(made.items[labels.index("bottom_left")])
-    assert item.text_edit.range.start == place(text, at)
+    at = place(editor.texts[uri], editor.texts[uri].index("bottom_left + (16, 0)"))
+    made = await editor.query("completion", uri, position=at)
+    items = {item.label: item for item in made.items}
+    assert {"bottom_left", "center"} <= items.keys()
+    assert "solid" not in items
+    assert items["bottom_left"].text_edit.range.start == at
 
 
 async def test_completion_is_documented_when_it_is_looked_at(editor: Editor) -> None:
@@ -295,7 +286,6 @@ async def test_completion_is_documented_when_it_is_looked_at(editor: Editor) -> 
     assert item.documentation is None
     item = await editor.completion_item_resolve_async(item)
     assert "trapezoid(" in item.documentation.value
-    editor.close(uri)
 
 
 async def test_signature_help_marks_the_argument(editor: Editor) -> None:
@@ -381,7 +371,6 @@ async def test_trying_the_ends_ends_when_the_text_changes(editor: Editor) -> Non
     editor.replace(uri, "94mm", "95mm")
     with pytest.raises(JsonRpcException, match="the text has changed"):
         await asked
-    editor.close(uri)
 
 
 async def test_inlay_hints_are_the_solved_values(editor: Editor) -> None:
