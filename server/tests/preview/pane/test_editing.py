@@ -26,28 +26,24 @@ def along(pane: Pane, value: float, low: float = 60, high: float = 200) -> tuple
     return box["x"] + 7 + (value - low) / (high - low) * (box["width"] - 14), box["y"] + box["height"] / 2
 
 
-def asked(pane: Pane) -> list[tuple[str, dict[str, Any]]]:
-    return [(message["method"], message["params"]) for message in pane.host.heard if "id" in message]
+def tried(pane: Pane) -> list[tuple[Any, bool]]:
+    """The values and places that were tried, and those that were written."""
+    found = []
+    for message in pane.host.heard:
+        match message["method"], message["params"]:
+            case "aidl/try", {"knobs": {"width": value}} | {"drag": {"to": value}}:
+                found.append((value, False))
+            case ("aidl/setKnob", {"value": value}) | ("aidl/drag", {"to": value}):
+                found.append((value, True))
+    return found
 
 
-def knobs(pane: Pane) -> list[tuple[Any, bool]]:
-    """The values that were tried, and those that were written."""
-    tried = {"aidl/try": False, "aidl/setKnob": True}
-    return [
-        (params["value"] if tried[method] else next(iter(params["knobs"].values())), tried[method])
-        for method, params in asked(pane)
-        if method in tried
-    ]
-
-
-def drags(pane: Pane) -> list[tuple[list[float], bool]]:
-    """The places where a point was tried, and where it was left."""
-    tried = {"aidl/try": False, "aidl/drag": True}
-    return [
-        ((params if tried[method] else params["drag"])["to"], tried[method])
-        for method, params in asked(pane)
-        if method in tried
-    ]
+def pull(pane: Pane, *places: tuple[float, float], steps: int = 1) -> None:
+    """Presses at the first place on the page, and moves over the others."""
+    pane.page.mouse.move(*places[0])
+    pane.page.mouse.down()
+    for place in places[1:]:
+        pane.page.mouse.move(*place, steps=steps)
 
 
 # Fields
@@ -92,8 +88,8 @@ def test_choices_truths_and_texts(still: Pane) -> None:
     still.page.get_by_role("switch", name="feet").check()
     field(still, "label").fill("it's")
     field(still, "label").press("Enter")
-    still.host.wait(lambda: len([1 for _, final in knobs(still) if final]) == 4)
-    assert [value for value, final in knobs(still) if final] == ["m5", 6, True, "it's"]
+    still.host.wait(lambda: len([1 for _, final in tried(still) if final]) == 4)
+    assert [value for value, final in tried(still) if final] == ["m5", 6, True, "it's"]
     assert [params["path"] for params in still.host.of("aidl/setKnob")] == ["bolt", "size", "a.feet", "label"]
 
 
@@ -172,11 +168,8 @@ def test_points_appear_when_their_element_is_pointed_at(still: Pane) -> None:
 
 
 def test_a_slider_asks_for_one_thing_at_a_time_and_next_for_the_newest(pane: Pane) -> None:
-    pane.page.mouse.move(*along(pane, 100))
-    pane.page.mouse.down()
-    for value in (110, 120, 130, 140):
-        pane.page.mouse.move(*along(pane, value), steps=3)
-    (first, final), *others = knobs(pane)
+    pull(pane, *(along(pane, value) for value in (100, 110, 120, 130, 140)), steps=3)
+    (first, final), *others = tried(pane)
     assert not others
     assert not final
     assert 100 < first < 112
@@ -187,24 +180,22 @@ def test_a_slider_asks_for_one_thing_at_a_time_and_next_for_the_newest(pane: Pan
     expect(pane.find("#status")).to_contain_text("tried")
     expect(pane.find("#status-size")).to_have_text("120 × 60 mm")
     pane.host.hears("aidl/try", 2)
-    assert knobs(pane)[1] == (140, False)
+    assert tried(pane)[1] == (140, False)
     pane.page.mouse.move(*along(pane, 150))
-    assert len(knobs(pane)) == 2
+    assert len(tried(pane)) == 2
 
     pane.page.mouse.up()
     pane.host.hears("aidl/setKnob")
-    assert knobs(pane)[2:] == [(150, True)]
+    assert tried(pane)[2:] == [(150, True)]
     pane.shows(knobs=[knob(value=150)])
     expect(field(pane)).to_have_value("150")
     expect(pane.find("#status")).to_have_text("Solved")
 
 
 def test_a_late_answer_to_what_was_tried_is_not_shown(pane: Pane) -> None:
-    pane.page.mouse.move(*along(pane, 100))
-    pane.page.mouse.down()
-    pane.page.mouse.move(*along(pane, 120))
+    pull(pane, along(pane, 100), along(pane, 120))
     pane.page.mouse.up()
-    pane.host.wait(lambda: (120, True) in knobs(pane))
+    pane.host.wait(lambda: (120, True) in tried(pane))
     pane.host.answer("aidl/try", picture(tried=True, degrees=77))
     pane.shows(knobs=[knob(value=120)])
     expect(pane.find("#status-freedom")).to_have_text("2 degrees of freedom")
@@ -212,13 +203,11 @@ def test_a_late_answer_to_what_was_tried_is_not_shown(pane: Pane) -> None:
 
 def test_a_slider_ends_at_the_bounds(pane: Pane) -> None:
     for start, past, bound in ((100, 400, 200), (200, -100, 60)):
-        pane.page.mouse.move(*along(pane, start))
-        pane.page.mouse.down()
-        pane.page.mouse.move(*along(pane, past))
+        pull(pane, along(pane, start), along(pane, past))
         pane.page.mouse.up()
-        pane.host.wait(lambda bound=bound: (bound, True) in knobs(pane))
+        pane.host.wait(lambda bound=bound: (bound, True) in tried(pane))
         pane.shows(knobs=[knob(value=bound)])
-    assert all(60 <= value <= 200 for value, _ in knobs(pane))
+    assert all(60 <= value <= 200 for value, _ in tried(pane))
 
 
 def test_a_slider_by_keys_writes_when_the_key_is_let_go(pane: Pane) -> None:
@@ -226,20 +215,18 @@ def test_a_slider_by_keys_writes_when_the_key_is_let_go(pane: Pane) -> None:
     pane.page.keyboard.down("ArrowRight")
     pane.page.keyboard.down("ArrowRight")
     pane.host.hears("aidl/try")
-    assert not any(final for _, final in knobs(pane))
+    assert not any(final for _, final in tried(pane))
     pane.page.keyboard.up("ArrowRight")
-    pane.host.wait(lambda: (101, True) in knobs(pane))  # two steps of half a millimetre
+    pane.host.wait(lambda: (101, True) in tried(pane))  # two steps of half a millimetre
     pane.shows(knobs=[knob(value=101)])
     pane.page.keyboard.press("End")
-    pane.host.wait(lambda: (200, True) in knobs(pane))
+    pane.host.wait(lambda: (200, True) in tried(pane))
 
 
 def test_params_that_a_drag_changes_are_shown(pane: Pane) -> None:
     x, y = pane.middle(".handle")
     pane.page.get_by_role("button", name="Points").click()
-    pane.page.mouse.move(x, y)
-    pane.page.mouse.down()
-    pane.page.mouse.move(x + 40, y, steps=3)
+    pull(pane, (x, y), (x + 40, y), steps=3)
     pane.host.hears("aidl/try")
     pane.shows(tried=True, knobs=[knob(value=117)])
     expect(field(pane)).to_have_value("117")
@@ -249,9 +236,7 @@ def test_params_that_a_drag_changes_are_shown(pane: Pane) -> None:
 
 
 def test_what_is_wrong_is_looked_into_when_the_slider_rests(pane: Pane) -> None:
-    pane.page.mouse.move(*along(pane, 100))
-    pane.page.mouse.down()
-    pane.page.mouse.move(*along(pane, 150))
+    pull(pane, along(pane, 100), along(pane, 150))
     assert "rests" not in pane.host.hears("aidl/try")
     pane.shows(tried=True, status="partial")
     assert pane.host.hears("aidl/try", 2)["rests"] is True
@@ -263,14 +248,12 @@ def test_what_is_not_in_the_text_can_only_be_tried(pane: Pane, changes: dict[str
     pane.shows(knobs=[knob(**changes), knob(path="depth", name="depth")])
     reset = pane.page.get_by_role("button", name="Reset width")
     expect(reset).to_be_hidden()
-    pane.page.mouse.move(*along(pane, 100))
-    pane.page.mouse.down()
-    pane.page.mouse.move(*along(pane, 150))
+    pull(pane, along(pane, 100), along(pane, 150))
     pane.page.mouse.up()
     pane.host.hears("aidl/try")
     pane.shows(tried=True, knobs=[knob(value=150, **changes), knob(path="depth", name="depth")], degrees=9)
     expect(reset).to_be_visible()
-    assert knobs(pane) == [(150, False)]
+    assert tried(pane) == [(150, False)]
     reset.click()
     expect(field(pane)).to_have_value("100")
     expect(pane.find("#status-freedom")).to_have_text("2 degrees of freedom")
@@ -280,10 +263,9 @@ def test_what_is_not_in_the_text_can_only_be_tried(pane: Pane, changes: dict[str
 
 
 def grab(pane: Pane, x: float, y: float) -> None:
-    """Take hold of a handle that is there."""
+    """Takes hold of a handle that is there."""
     pane.page.get_by_role("button", name="Points", exact=True).click()
-    pane.move(x, y)
-    pane.page.mouse.down()
+    pull(pane, pane.at(x, y))
 
 
 def test_a_dragged_point_tells_millimetres(pane: Pane) -> None:
@@ -292,10 +274,10 @@ def test_a_dragged_point_tells_millimetres(pane: Pane) -> None:
     pane.move(30.4, -4.8, steps=2)
     expect(pane.find("#tooltip")).to_contain_text("30.0, −5.0 mm" if pane.scale < 8 else "30.5, −5.0 mm")
     pane.page.mouse.up()
-    pane.host.wait(lambda: any(final for _, final in drags(pane)))
-    assert [final for _, final in drags(pane)] == [False, True]
+    pane.host.wait(lambda: any(final for _, final in tried(pane)))
+    assert [final for _, final in tried(pane)] == [False, True]
     assert pane.scale < 8
-    assert drags(pane)[-1] == ([30, -5], True)
+    assert tried(pane)[-1] == ([30, -5], True)
     assert pane.host.of("aidl/drag")[-1]["id"] == "h0"
     assert pane.host.of("aidl/goto") == []
     assert pane.middle(".handle .knot") == pytest.approx(pane.at(30, -5), abs=0.6)
@@ -305,12 +287,10 @@ def test_a_point_is_dragged_at_once_after_another_was_chosen(pane: Pane) -> None
     pane.shows(handles=[handle(), handle(id="h1", at=[-20, 5])])
     grab(pane, 20, 5)
     pane.page.mouse.up()
-    pane.move(-20, 5)
-    pane.page.mouse.down()
-    pane.move(-25, 8, steps=3)
+    pull(pane, pane.at(-20, 5), pane.at(-25, 8), steps=3)
     pane.page.mouse.up()
-    pane.host.wait(lambda: any(final for _, final in drags(pane)))
-    assert drags(pane)[-1] == ([-25, 8], True)
+    pane.host.wait(lambda: any(final for _, final in tried(pane)))
+    assert tried(pane)[-1] == ([-25, 8], True)
     assert pane.host.of("aidl/drag")[-1]["id"] == "h1"
 
 
@@ -324,7 +304,7 @@ def test_escape_while_dragging_forgets_it(pane: Pane) -> None:
     pane.page.mouse.up()
     expect(pane.find(".handle.dragged")).to_have_count(0)
     expect(pane.find("#status-freedom")).to_have_text("2 degrees of freedom")
-    assert all(not final for _, final in drags(pane))
+    assert all(not final for _, final in tried(pane))
 
 
 def test_a_point_moves_by_keys(pane: Pane) -> None:
@@ -334,5 +314,5 @@ def test_a_point_moves_by_keys(pane: Pane) -> None:
     pane.page.keyboard.down("ArrowUp")
     pane.page.keyboard.down("ArrowUp")
     pane.page.keyboard.up("ArrowUp")
-    pane.host.wait(lambda: drags(pane)[-1:] == [([20, 7], True)])
+    pane.host.wait(lambda: tried(pane)[-1:] == [([20, 7], True)])
     assert pane.at(0, 0) == view
