@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
+import asyncio
 import json
 import os
 import socket
 import subprocess
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import pytest
 
 from aidl_lang.tools.cli import main
-from aidl_lang.tools.cli.serving import find_spec
 from aidl_server.lsp import serve
 from server.tests.lsp.editor import COMMAND, ENVIRONMENT
 from server.tests.lsp.test_in_flight import SLOW
@@ -36,6 +36,9 @@ class Wire:
     def raw(self, data: bytes) -> None:
         self.outgoing.write(data)
         self.outgoing.flush()
+
+    def close(self) -> None:
+        self.outgoing.close()
 
     def read(self) -> dict[str, Any]:
         length = 0
@@ -117,16 +120,25 @@ def test_rules_are_kept_where_clients_break_them(server: subprocess.Popen[bytes]
     assert b"Traceback" not in server.stderr.read()
 
 
-def test_leaving_without_a_word(server: subprocess.Popen[bytes]) -> None:
-    wire = Wire(server.stdout, server.stdin)
-    wire.greet()
-    wire.open(SLOW)
-    server.stdin.close()
-    assert server.wait(SECONDS) == 1
-    assert b"Traceback" not in server.stderr.read()
+@pytest.mark.parametrize("leave", [Wire.close, lambda wire: wire.send(method="exit")])
+def test_leaving_without_a_word(leave: Callable[[Wire], None]) -> None:
+    (incoming, told), (said, outgoing) = os.pipe(), os.pipe()
+
+    def talk(wire: Wire) -> None:
+        wire.greet()
+        wire.open(SLOW)
+        leave(wire)
+
+    async def session() -> int:
+        with open(said, "rb") as hearing, open(told, "wb") as saying:
+            serving = asyncio.create_task(serve.serve_pipes(incoming, outgoing))
+            await asyncio.to_thread(talk, Wire(hearing, saying))
+            return await serving
+
+    assert asyncio.run(session()) == 1
 
 
-def test_a_client_on_a_socket_that_counts_in_bytes() -> None:
+def test_a_client_on_a_socket_that_counts_in_bytes_and_leaves() -> None:
     process = subprocess.Popen([*COMMAND, "--tcp", "127.0.0.1:0"], stderr=subprocess.PIPE, env=ENVIRONMENT)
     with process:
         address, _, words = process.stderr.readline().decode().partition(": ")
@@ -141,8 +153,11 @@ def test_a_client_on_a_socket_that_counts_in_bytes() -> None:
             (wrong,) = wire.diagnostics("untitled:a")
             character = len(text[: text.index("raduis")].encode())
             assert wrong["range"]["start"] == {"line": 0, "character": character}
-            wire.send(method="exit")  # without a `shutdown`
-            assert process.wait(SECONDS) == 1
+            wire.open(SLOW, "untitled:slow")
+            assert wire.diagnostics("untitled:slow") == []  # of what was found without running it
+            stream.close()
+        assert process.wait(SECONDS) == 1  # while it is being run
+        assert b"Traceback" not in process.stderr.read()
 
 
 def test_an_address_that_cannot_be_served(capsys: pytest.CaptureFixture[str]) -> None:
@@ -154,19 +169,6 @@ def test_an_address_that_cannot_be_served(capsys: pytest.CaptureFixture[str]) ->
     for wrong in ("8000", "here:", "here:99999"):
         with pytest.raises(SystemExit):
             main(["lsp", "--tcp", wrong])
-
-
-def test_without_its_packages_it_says_what_to_install(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    monkeypatch.setattr(
-        "aidl_lang.tools.cli.serving.find_spec",
-        lambda name: None if name == "aidl_server" else find_spec(name),
-    )
-    assert main(["lsp"]) == 2
-    said = capsys.readouterr().err
-    assert "E0954" in said
-    assert "aidl-lang[editor]" in said
 
 
 def test_nothing_but_the_protocol_is_on_standard_output() -> None:

@@ -112,7 +112,7 @@ def test_files_are_asked_for_and_saved(pane: Pane) -> None:
 # VS Code
 
 
-def test_in_vs_code_messages_go_by_its_api(open_pane) -> None:
+def test_in_vs_code_messages_go_by_its_api_and_its_colors_win(open_pane) -> None:
     pane = open_pane(script=CODE)
     pane.page.wait_for_function("() => window.sent.some(m => m.method === 'aidl/preview')")
     assert "/socket" not in pane.host.requests
@@ -126,23 +126,18 @@ def test_in_vs_code_messages_go_by_its_api(open_pane) -> None:
     assert [m["method"] for m in sent] == ["aidl/preview", "aidl/hover", "aidl/goto"]
     assert pane.page.evaluate("() => window.kept.uri") == URI
     expect(pane.find("#theme")).to_be_hidden()
-    pane.page.get_by_role("button", name="Points", exact=True).click()
-    pane.page.reload()
-    expect(pane.page.get_by_role("button", name="Points", exact=True)).to_have_attribute(
-        "aria-pressed", "true"
-    )
-
-
-def test_in_vs_code_its_colors_win(open_pane) -> None:
-    pane = open_pane(script=CODE)
     pane.page.evaluate(
         """() => {
             document.body.classList.add("vscode-dark");
             document.documentElement.style.setProperty("--vscode-sideBar-background", "rgb(1, 2, 3)");
         }"""
     )
-    background = "() => getComputedStyle(document.querySelector('.toolbar')).backgroundColor"
-    assert pane.page.evaluate(background) == "rgb(1, 2, 3)"
+    expect(pane.find(".toolbar")).to_have_css("background-color", "rgb(1, 2, 3)")
+    pane.page.get_by_role("button", name="Points", exact=True).click()
+    pane.page.reload()
+    expect(pane.page.get_by_role("button", name="Points", exact=True)).to_have_attribute(
+        "aria-pressed", "true"
+    )
 
 
 # Themes and sizes
