@@ -118,17 +118,15 @@ class Editor(LanguageClient):
 
     async def status(self, uri: str) -> dict[str, Any]:
         """What came of the text as it is now."""
-        version = self.versions[uri]
-        return await self.until(
-            lambda: next((s for s in self.statuses if s["uri"] == uri and s["version"] == version), None)
-        )
+        return await self._of_now(self.statuses, uri)
 
     async def picture(self, uri: str) -> dict[str, Any]:
         """The picture that came after the text as it is now was run; it has to be shown."""
-        version = self.versions[uri]
-        return await self.until(
-            lambda: next((p for p in self.pictures if p["uri"] == uri and p["version"] == version), None)
-        )
+        return await self._of_now(self.pictures, uri)
+
+    async def _of_now(self, news: list[dict[str, Any]], uri: str) -> dict[str, Any]:
+        wanted = uri, self.versions[uri]
+        return await self.until(lambda: next((n for n in news if (n["uri"], n["version"]) == wanted), None))
 
     async def query(self, method: str, where: str | dict[str, Any], **params: Any) -> Any:
         """A question about a text, or about a place in it (see `at`)."""

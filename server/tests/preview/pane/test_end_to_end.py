@@ -170,24 +170,3 @@ def test_what_is_typed_is_drawn_saved_and_undone(preview: Preview) -> None:
     assert "200mm" in preview.text
     preview.page.keyboard.press("Control+s")
     wait(lambda: preview.text == PLATE)
-
-
-def test_a_number_with_a_unit_is_written_and_undone(preview: Preview) -> None:
-    field = preview.page.get_by_role("textbox", name="width")
-    for text, written in (("22cm", "22cm"), ("100 + 2*20", "14cm"), ("9in - 1/2in", "8.5in")):
-        field.fill(text)
-        field.press("Enter")
-        wait(lambda: preview.text == PLATE.replace("160mm", written))  # noqa: B023
-    preview.until_width(215.9)
-    for text, why in (
-        ("90deg", "`90deg` does not fit `width`: that is an angle, and it is a length"),
-        ("1m", "`width` cannot be `1000`: that is outside its range 100..240 mm"),
-        ("wide", "`wide` does not fit `width`: there is no `wide` here"),
-    ):
-        field.fill(text)
-        field.press("Enter")
-        expect(preview.find(".knob .refusal")).to_contain_text(why.replace("`", ""))
-    assert "8.5in" in preview.text
-    preview.find("#undo").click()
-    preview.until_width(140)
-    wait(lambda: preview.text == PLATE.replace("160mm", "14cm"))

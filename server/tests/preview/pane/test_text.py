@@ -157,12 +157,14 @@ def test_what_others_write_is_put_together_with_what_is_typed(pane: Pane) -> Non
     expect(pane.find(".toast")).to_have_count(0)
 
 
-def test_what_cannot_be_taken_is_told(pane: Pane) -> None:
+def test_what_cannot_be_taken_is_told_and_not_left_unasked(pane: Pane) -> None:
     type_at_end(pane, 0, "q")
     typed(pane)
     pane.host.answer("aidl/type", {"applied": False, "reason": "there is no room"})
     expect(pane.find(".toast")).to_contain_text("there is no room")
     expect(pane.page.get_by_role("button", name="Unsaved")).to_be_visible()
+    pane.page.reload()
+    assert pane.dialogs == ["beforeunload"]
 
 
 def test_another_host_gets_what_the_first_did_not_save(pane: Pane) -> None:
@@ -176,30 +178,19 @@ def test_another_host_gets_what_the_first_did_not_save(pane: Pane) -> None:
     assert typed(pane, 2) == {"uri": URI, "version": 1, "changes": [insertion(0, len(LINES[0]), "w")]}
 
 
-def test_a_problem_leads_to_its_place_in_the_text(pane: Pane) -> None:
+def test_a_problem_leads_to_its_place_in_the_text_where_keys_are_letters(pane: Pane) -> None:
     of_one_version(pane, problems=[problem(range=place(3, 8, 15))])
+    before = pane.at(0, 0), pane.scale
     pane.find("#problems-list").get_by_role("button", name="line 4").click()
     expect(pane.find(".cm-content")).to_be_focused()
-    pane.page.keyboard.type("W")
-    assert typed(pane)["changes"][0]["start"] == {"line": 3, "character": 8}
-
-
-def test_keys_of_the_pane_are_letters_in_the_text(pane: Pane) -> None:
-    before = pane.at(0, 0), pane.scale
-    type_at_end(pane, 0, "ft+0")
-    assert typed(pane)["changes"][0]["text"].startswith("ft+0"[:1])
+    pane.page.keyboard.type("ft+0")
+    change = typed(pane)["changes"][0]
+    assert (change["start"], change["text"][0]) == ({"line": 3, "character": 8}, "f")
     assert (pane.at(0, 0), pane.scale) == before
     expect(pane.find("#source")).to_be_visible()
     for _ in range(2):  # a list of completions may be open
         pane.page.keyboard.press("Escape")
     expect(pane.find(".cm-content")).not_to_be_focused()
-
-
-def test_a_page_with_unsaved_text_asks_before_it_is_left(pane: Pane) -> None:
-    type_at_end(pane, 0, "u")
-    typed(pane)
-    pane.page.reload()
-    assert pane.dialogs == ["beforeunload"]
 
 
 def test_enter_is_a_new_line_unless_something_offered_was_chosen(pane: Pane) -> None:
