@@ -29,12 +29,10 @@ from aidl_server.ide.lenses import Found
 from aidl_server.ide.preview.elements import Preview
 from aidl_server.ide.workspace import Positions, Unit, View
 
-_HALVES = re.compile("[\ud800-\udfff]")
-
 
 def whole(text: str) -> str:
     """Returns a text without surrogate halves of characters, which JSON can hold and no text may."""
-    return _HALVES.sub("\ufffd", text)
+    return re.sub("[\ud800-\udfff]", "\ufffd", text)
 
 
 Look: TypeAlias = frozenset[str]

@@ -32,8 +32,6 @@ if TYPE_CHECKING:
 # --- Work off the message thread: single threads with queues.
 
 T = TypeVar("T")
-
-
 FAILED = -32803
 """The protocol's code for a request that was understood and cannot be done."""
 
@@ -142,26 +140,23 @@ class Tidier:
     def __init__(self, loop: asyncio.AbstractEventLoop, is_busy: Callable[[], bool]) -> None:
         self._loop, self._is_busy = loop, is_busy
         self._left = 0
-        self._planned: asyncio.TimerHandle | None = None
-        self._settling: asyncio.TimerHandle | None = None
+        self._planned: dict[Callable[[], None], asyncio.TimerHandle] = {}
         gc.disable()
 
     def note(self) -> None:
         self._left += 1
-        if self._planned is not None:
-            self._planned.cancel()
-        self._planned = self._loop.call_later(0 if self._left >= _MOST else _PAUSE, self._tidy)
+        self.plan(0 if self._left >= _MOST else _PAUSE, self._tidy)
+
+    def plan(self, seconds: float, work: Callable[[], None]) -> None:
+        """Calls a while after it was last asked to: once for documents that are closed in a row."""
+        if (planned := self._planned.get(work)) is not None:
+            planned.cancel()
+        self._planned[work] = self._loop.call_later(seconds, work)
 
     def _tidy(self) -> None:
         if self._left >= _MOST or not self._is_busy():  # else there is a note at the end of that
             self._left = 0
             gc.collect()
-
-    def settle_later(self) -> None:
-        """Settles, once for all documents that are closed in a row: it may take a quarter of a second."""
-        if self._settling is not None:
-            self._settling.cancel()
-        self._settling = self._loop.call_later(_RELEASED, self.settle)
 
     def settle(self) -> None:
         """Looks through everything, and puts what stays out of sight."""
@@ -171,8 +166,8 @@ class Tidier:
             gc.freeze()
 
     def close(self) -> None:
-        if self._planned is not None:
-            self._planned.cancel()
+        for planned in self._planned.values():
+            planned.cancel()
         gc.enable()
 
 
@@ -248,7 +243,7 @@ class Runner:
         self.solving.drop(document)
         if self.active is document:
             self.active = None
-        self._tidier.settle_later()
+        self._tidier.plan(_RELEASED, self._tidier.settle)
 
     def close(self) -> None:
         self._is_closing = True
