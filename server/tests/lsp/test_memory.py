@@ -19,7 +19,7 @@ from aidl_server.lsp.serve import make
 PROGRAM = (
     "solid plate {{\n    rim = circle(radius: 5)\n    hole bore {{ edge = circle(radius: 2) }}\n}}\n// {}\n"
 )
-EDITS = 8
+EDITS = 10
 SECONDS = 60
 
 
@@ -70,6 +70,9 @@ async def typed(path: Path) -> int:
     """How many models are alive after many edits; after the document was closed there are none."""
     local, uri = Local(), path.as_uri()
     models: weakref.WeakSet[Any] = weakref.WeakSet()
+    await asyncio.sleep(0.1)
+    while local.server.runner.solving.running:  # what it loads first leaves it no pause
+        await asyncio.sleep(0.05)
     local.open(uri, PROGRAM.format(0))
     for version in range(1, EDITS):
         document = local.server.documents.get(uri)
