@@ -58,8 +58,8 @@ _LIST_BEGINS_A_LINE = re.compile(r"^ *\[\w[\w., ]*\]\.", re.MULTILINE)
 
 @cache
 def specified() -> dict[str, str]:
-    """The programs of `tests/spec` that are read."""
-    found = [block for page in sorted((ROOT / "tests/spec").glob("*.md")) for block in programs(page)]
+    """Of the programs of `tests/spec`, those that are read."""
+    found = some([block for page in sorted((ROOT / "tests/spec").glob("*.md")) for block in programs(page)])
     return {
         block.place: block.text
         for block in found
@@ -105,11 +105,11 @@ def test_every_program_of_the_project_is_read_without_an_error() -> None:
 
 def test_every_program_is_taken_or_refused_as_by_the_parser() -> None:
     assert len(all_programs()) > 1500
-    programs = some(sorted(all_programs().items()), 3)
+    programs = some(sorted(all_programs().items()), 5)
     verdicts = {place: (refused(parse(text)), errors(text)) for place, text in programs}
     different = {place: said for place, said in verdicts.items() if bool(said[0]) != bool(said[1])}
     assert different == {}
-    assert sum(1 for reason, _ in verdicts.values() if reason) > 40
+    assert sum(1 for reason, _ in verdicts.values() if reason) > 30
 
 
 # --- Mutants --------------------------------------------------------------------------------------
@@ -162,7 +162,7 @@ def test_the_letters_of_names_are_those_of_the_parser() -> None:
         bad = set(letters).difference(good)
         assert len(bad) > 5_000
         assert [
-            char for char in some(sorted(bad)) if not parse(f"let {before}{char} = 1").root_node.has_error
+            char for char in some(sorted(bad), 12) if not parse(f"let {before}{char} = 1").root_node.has_error
         ] == []
 
 
@@ -229,8 +229,7 @@ NODES: dict[type[ast.Node], str] = {
 
 def test_spans_are_those_of_the_parser() -> None:
     seen = Counter[str]()
-    every = {**whole_programs(), **specified()}
-    for place, text in some([*every.items()], 3):
+    for place, text in [*some([*whole_programs().items()]), *specified().items()]:
         if has_signed_lines(text):
             continue
         ends = [0]

@@ -29,8 +29,10 @@ from aidl_server.ide.lenses import Found
 from aidl_server.ide.preview.elements import Preview
 from aidl_server.ide.workspace import Positions, Unit, View
 
-_HALVES = re.compile("[\ud800-\udfff]")
-"""Surrogate halves of characters, which JSON can hold and no text may."""
+
+def whole(text: str) -> str:
+    """Returns a text without surrogate halves of characters, which JSON can hold and no text may."""
+    return re.sub("[\ud800-\udfff]", "\ufffd", text)
 
 
 Look: TypeAlias = frozenset[str]
@@ -126,7 +128,7 @@ class Document:
     def apply(self, changes: Sequence[types.TextDocumentContentChangeEvent], unit: Unit) -> None:
         """Changes the text. Ranges that do not exist mean the nearest that do."""
         for change in changes:
-            text = _HALVES.sub("\ufffd", change.text)
+            text = whole(change.text)
             if isinstance(change, types.TextDocumentContentChangePartial):
                 positions = Positions(self.text, unit)
                 start = positions.offset(change.range.start.line, change.range.start.character)
@@ -152,8 +154,7 @@ class Documents:
         return self._by_uri.get(unquote(uri))
 
     def open(self, item: types.TextDocumentItem) -> Document:
-        text = _HALVES.sub("\ufffd", item.text)
-        document = Document(item.uri, path_of(item.uri), item.version, text)
+        document = Document(item.uri, path_of(item.uri), item.version, whole(item.text))
         self._by_uri = {**self._by_uri, unquote(item.uri): document}
         return document
 

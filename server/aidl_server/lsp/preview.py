@@ -60,8 +60,6 @@ class Option:
 
 _NESTING = 5.0
 """Seconds for packing parts by their outlines."""
-
-
 _PACKED = {"boxes": None, "outlines": _NESTING}
 
 OPTIONS = (

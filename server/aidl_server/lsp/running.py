@@ -32,8 +32,6 @@ if TYPE_CHECKING:
 # --- Work off the message thread: single threads with queues.
 
 T = TypeVar("T")
-
-
 FAILED = -32803
 """The protocol's code for a request that was understood and cannot be done."""
 
@@ -126,14 +124,14 @@ class Lane:
 # A run leaves tens of thousands of objects that hold each other. Python's collector would look for them in
 # the middle of the next run, and go through the library and everything else each time; here it does so in
 # the pauses, and what was loaded is put out of its sight once. What documents stood for then is among that,
-# so all is looked through again when one is closed.
+# so all is looked through again when some are closed.
 
 _PAUSE = 0.05
 """Seconds without work after which nobody seems to wait."""
 _MOST = 100
 """Pieces of work after which it collects without a pause."""
-_RELEASED = 0.5
-"""Seconds after which nothing is under way for a document that was closed."""
+_RELEASED = 2.0
+"""Seconds after which nothing is under way for the documents that were closed."""
 
 
 class Tidier:
@@ -142,14 +140,18 @@ class Tidier:
     def __init__(self, loop: asyncio.AbstractEventLoop, is_busy: Callable[[], bool]) -> None:
         self._loop, self._is_busy = loop, is_busy
         self._left = 0
-        self._planned: asyncio.TimerHandle | None = None
+        self._planned: dict[Callable[[], None], asyncio.TimerHandle] = {}
         gc.disable()
 
     def note(self) -> None:
         self._left += 1
-        if self._planned is not None:
-            self._planned.cancel()
-        self._planned = self._loop.call_later(0 if self._left >= _MOST else _PAUSE, self._tidy)
+        self.plan(0 if self._left >= _MOST else _PAUSE, self._tidy)
+
+    def plan(self, seconds: float, work: Callable[[], None]) -> None:
+        """Calls a while after it was last asked to: once for documents that are closed in a row."""
+        if (planned := self._planned.get(work)) is not None:
+            planned.cancel()
+        self._planned[work] = self._loop.call_later(seconds, work)
 
     def _tidy(self) -> None:
         if self._left >= _MOST or not self._is_busy():  # else there is a note at the end of that
@@ -164,8 +166,8 @@ class Tidier:
             gc.freeze()
 
     def close(self) -> None:
-        if self._planned is not None:
-            self._planned.cancel()
+        for planned in self._planned.values():
+            planned.cancel()
         gc.enable()
 
 
@@ -241,7 +243,7 @@ class Runner:
         self.solving.drop(document)
         if self.active is document:
             self.active = None
-        self._loop.call_later(_RELEASED, self._tidier.settle)
+        self._tidier.plan(_RELEASED, self._tidier.settle)
 
     def close(self) -> None:
         self._is_closing = True

@@ -225,19 +225,18 @@ def make(limits: Limits = LIMITS, apply: Apply | None = None) -> Server:
 
 def serve_standard_streams() -> int:
     """Returns the exit code when the client has ended the session."""
-    incoming, outgoing = claim_standard_streams()
+    return _run(serve_pipes(*claim_standard_streams()))
 
-    async def main() -> int:
-        loop = asyncio.get_running_loop()
-        reader = asyncio.StreamReader()
-        output = Output(outgoing, lost=lambda: loop.call_soon_threadsafe(reader.feed_eof))
-        read_into(reader, incoming, loop)
-        try:
-            return await _serve(reader, output)
-        finally:
-            output.close()
 
-    return _run(main())
+async def serve_pipes(incoming: int, outgoing: int) -> int:
+    loop = asyncio.get_running_loop()
+    reader = asyncio.StreamReader()
+    output = Output(outgoing, lost=lambda: loop.call_soon_threadsafe(reader.feed_eof))
+    read_into(reader, incoming, loop)
+    try:
+        return await _serve(reader, output)
+    finally:
+        output.close()
 
 
 def serve_socket(listener: socket.socket) -> int:

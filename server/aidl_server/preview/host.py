@@ -20,7 +20,7 @@ from aidl_lang.common.diagnostics import Edit
 from aidl_lang.common.source import SourceFile
 from aidl_server.ide.references import CannotError
 from aidl_server.ide.workspace import SETTINGS, Positions
-from aidl_server.lsp.documents import Document, read
+from aidl_server.lsp.documents import Document, read, whole
 from aidl_server.lsp.serve import make
 from aidl_server.lsp.server import Asked
 from aidl_server.preview import files
@@ -98,7 +98,6 @@ class Page:
 
 # --- What a page types, as changes of the text that it has.
 
-_HALVES = re.compile("[\ud800-\udfff]")
 _LINE_END = re.compile("\r\n|\n|\r")
 _INVALID = "this page sent no changes of a text"
 
@@ -127,7 +126,7 @@ def _edit(positions: Positions, change: Any) -> tuple[int, int, str]:
         } if not any(isinstance(number, bool) for number in (line, character, last, behind)):
             start, stop = positions.offset(line, character), positions.offset(last, behind)
             if start <= stop:
-                return start, stop, _HALVES.sub("\ufffd", words)
+                return start, stop, whole(words)
     raise CannotError(_INVALID)
 
 

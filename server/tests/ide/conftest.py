@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from aidl_lang.syntax.tables import tokenize
 from aidl_server.ide.workspace import Project, View, Workspace, look, run
 from tests.compiled import LIGHTER
 
@@ -27,6 +28,12 @@ def seen(text: str, *, solved: bool = False, **files: str) -> View:
     project = opened({"part.aidl": text, **{f"{name}.aidl": other for name, other in files.items()}})
     view = look(Path("/project/part.aidl"), text, project.workspace.world(Path("/project/part.aidl")))
     return run(view) if solved else view
+
+
+def besides_numbers(text: str) -> list[str]:
+    """The words and signs of a program."""
+    words = [text[t.start : t.end] for t in tokenize(seen(text).source).tokens]
+    return [w for w in words if not w[:1].isdigit() and w != "-"]
 
 
 @cache

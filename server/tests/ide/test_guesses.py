@@ -10,12 +10,11 @@ import pytest
 
 from aidl_lang.common.diagnostics import Edit
 from aidl_lang.common.prose import shortest
-from aidl_lang.syntax.tables import tokenize
 from aidl_server.ide.guesses import Guess, can_write_back, guesses, write_back
 from aidl_server.ide.lenses import inlays
 from aidl_server.ide.references import CannotError
 from aidl_server.ide.workspace import View, applied, look, run
-from server.tests.ide.conftest import seen, solved_at
+from server.tests.ide.conftest import besides_numbers, seen, solved_at
 from tests.amount import TRIES_ALL, some
 from tests.compiled import EXAMPLES
 from tests.documents import ROOT, Block, programs
@@ -78,30 +77,6 @@ def test_each_number_that_may_change_stands_beside_what_it_became() -> None:
     assert found["ear.rim.center.x"].measure == "mm"
 
 
-@pytest.mark.parametrize(
-    "text",
-    [
-        "drawing d { a = line((0, 0), (40, 0))\n constrain { a.start == (5, 5)\n a.angle == 30 } }",
-        "drawing d { a = arc(center: (0, 0), start: (10, 0), end: (0, 10))\n constrain a.start == (5, 5) }",
-        "drawing d { p = (1, 2)\n l = line(p, (9, 9))\n constrain p == (3, 4) }",
-        "drawing d { var gap = 5\n c = circle((1, 2), radius: 3)\n constrain { gap == 7\n c.left == gap } }",
-        "drawing d { solid s at (1, 2) rotated guess(30deg) { r = square(center: (0, 0), size: 4) }\n"
-        " constrain { s.center == (9, 9)\n s.r.bottom.angle == 45 } }",
-        "drawing d { b = bezier((0, 0), (1, 5), (5, 5), (6, 0))\n constrain b.p0 == (2, 2) }",
-        "drawing d { p = polygon([(0, 0), (10, 0), (5, 8)])\n constrain p.corner[0] == (2, 2) }",
-        "drawing d { e = rectangle(center: (0, 0), width: 10, height: 5)\n constrain e.right == 20 }",
-    ],
-)
-def test_the_solved_numbers_written_down_draw_the_same(text: str) -> None:
-    view = seen(text, solved=True)
-    again = seen(written_down(view), solved=True)
-    assert curves(view)
-    assert near(curves(view), curves(again))
-    for guess in guesses(again):
-        assert guess.solved == pytest.approx(guess.written, abs=1e-6), guess
-    assert view.source.text != again.source.text
-
-
 def written_down(view: View) -> str:
     sole = [g for g in guesses(view) if not g.is_shared and g.solved is not None]
     edits = [Edit(g.span, f"{g.solved:.15f}{g.unit}") for g in sole]
@@ -162,12 +137,6 @@ def rewritten(view: View, **options) -> str:
     return applied(view.source.text, found)
 
 
-def words_besides_numbers(text: str) -> list[str]:
-    view = seen(text)
-    words = [text[t.start : t.end] for t in tokenize(view.source).tokens]
-    return [w for w in words if not w[:1].isdigit() and w != "-"]
-
-
 def test_first_guesses_become_what_was_solved() -> None:
     assert rewritten(seen(MOVED, solved=True)) == MOVED.replace("2)", "8)").replace("guess(5)", "guess(7)")
 
@@ -220,7 +189,7 @@ def test_examples_draw_the_same_and_have_nothing_left_to_tell(name: str) -> None
     assert near(curves(view), curves(again))
     kept = {g.path for g in guesses(again) if g.is_kept}
     assert [i for i in inlays(again) if not any(f"`{p}`" in i.tooltip for p in kept)] == []
-    assert words_besides_numbers(text) == words_besides_numbers(view.source.text)
+    assert besides_numbers(text) == besides_numbers(view.source.text)
 
 
 def test_a_program_that_would_draw_something_else_is_left_alone() -> None:

@@ -20,10 +20,9 @@ from aidl_server.ide.references import (
     rename,
     renameable,
 )
-from aidl_server.ide.workspace import Project, View, Workspace, applied
+from aidl_server.ide.workspace import Project, View, applied
 from server.tests.ide.conftest import opened
 from tests.compiled import FEW
-from tests.documents import ROOT
 
 FOLDER = Path("/project")
 
@@ -243,15 +242,9 @@ def test_every_name_of_the_examples_has_a_meaning_and_leads_back(example: View) 
             assert own[0].span in spans
 
 
-@pytest.fixture(scope="module")
-def examples() -> Project:
-    """All examples: whoever renames something looks for it in each."""
-    return Project(Workspace([ROOT / "examples"]))
-
-
 @pytest.mark.parametrize("path", FEW)
-def test_each_param_of_an_example_can_be_renamed(examples: Project, path: Path) -> None:
-    project = examples
+def test_each_param_of_an_example_can_be_renamed(path: Path) -> None:
+    project = opened({path.name: path.read_text("utf-8")}, path.parent)
     view = project.view(path)
     assert view is not None
     params = [node for node in ast.walk(view.module) if isinstance(node, ast.Param)]

@@ -17,9 +17,8 @@ from aidl_server.lsp.server import converter
 from tests.documents import ROOT
 
 COMMAND = [sys.executable, "-m", "aidl_lang", "lsp"]
-ENVIRONMENT = {**os.environ, "PYTHONPATH": str(ROOT)}
-EXAMPLES = ROOT / "examples"
-TELEPHONE = EXAMPLES / "telephone.aidl"
+ENVIRONMENT = {**os.environ, "PYTHONPATH": os.pathsep.join(map(str, (ROOT, ROOT / "server")))}
+TELEPHONE = ROOT / "examples" / "telephone.aidl"
 SECONDS = 60
 """Longer than anything here takes on a busy machine."""
 
@@ -117,29 +116,17 @@ class Editor(LanguageClient):
         )
         return list(last.diagnostics)
 
-    async def rid_of_errors(self, uri: str) -> None:
-        """Waits until the text as it is now has no errors: a file that it imports may change after it."""
-
-        def is_rid() -> bool:
-            of_now = [t for t in self.told if t.uri == uri and t.version == self.versions[uri]]
-            worst = types.DiagnosticSeverity.Error
-            return bool(of_now) and all(d.severity != worst for d in of_now[-1].diagnostics)
-
-        await self.until(is_rid)
-
     async def status(self, uri: str) -> dict[str, Any]:
         """What came of the text as it is now."""
-        version = self.versions[uri]
-        return await self.until(
-            lambda: next((s for s in self.statuses if s["uri"] == uri and s["version"] == version), None)
-        )
+        return await self._of_now(self.statuses, uri)
 
     async def picture(self, uri: str) -> dict[str, Any]:
         """The picture that came after the text as it is now was run; it has to be shown."""
-        version = self.versions[uri]
-        return await self.until(
-            lambda: next((p for p in self.pictures if p["uri"] == uri and p["version"] == version), None)
-        )
+        return await self._of_now(self.pictures, uri)
+
+    async def _of_now(self, news: list[dict[str, Any]], uri: str) -> dict[str, Any]:
+        wanted = uri, self.versions[uri]
+        return await self.until(lambda: next((n for n in news if (n["uri"], n["version"]) == wanted), None))
 
     async def query(self, method: str, where: str | dict[str, Any], **params: Any) -> Any:
         """A question about a text, or about a place in it (see `at`)."""

@@ -32,7 +32,7 @@ solid grid {
     }
 }
 """
-"""Takes a good part of a second where `count` is 20."""
+"""Takes a tenth of a second where `count` is 9."""
 
 
 def said(diagnostics) -> list[tuple[str, str]]:
@@ -51,7 +51,7 @@ async def test_after_many_quick_edits_the_diagnostics_are_those_of_the_text(
     await editor.ask("aidl/preview", uri=uri, show=[])
     rng = random.Random(seed)
     good = editor.texts[uri]
-    for _ in range(200):
+    for _ in range(60):
         text = editor.texts[uri]
         start = rng.randrange(len(text) + 1)
         match rng.randrange(5):
@@ -82,7 +82,6 @@ async def test_after_many_quick_edits_the_diagnostics_are_those_of_the_text(
     assert shown == sorted(shown)
     assert not editor.messages
     await editor.ask("aidl/previewClose", uri=uri)
-    editor.close(uri)
 
 
 async def test_a_broken_program_completes_and_keeps_its_picture(editor: Editor) -> None:
@@ -105,7 +104,6 @@ async def test_a_broken_program_completes_and_keeps_its_picture(editor: Editor) 
     editor.become(uri, TELEPHONE.read_text("utf-8"))
     again = await editor.picture(uri)
     assert (again["status"], again["stale"], again["svg"]) == ("solved", False, good["svg"])
-    editor.close(uri)
 
 
 async def test_a_request_can_be_taken_back(editor: Editor) -> None:
@@ -113,49 +111,44 @@ async def test_a_request_can_be_taken_back(editor: Editor) -> None:
     asked = asyncio.ensure_future(
         editor.protocol.send_request_async("aidl/preview", {"uri": uri, "show": []}, msg_id="taken-back")
     )
-    await asyncio.sleep(0.1)
+    await asyncio.sleep(0)  # in which it is sent
     editor.cancel_request(types.CancelParams("taken-back"))
     with pytest.raises(JsonRpcException) as refused:
         await asked
     assert refused.value.code == types.LSPErrorCodes.RequestCancelled.value
-    editor.close(uri)
 
 
 async def test_others_need_not_wait_for_a_slow_program(editor: Editor) -> None:
     slow = editor.open("untitled:slow", SLOW)
-    await asyncio.sleep(0.3)
+    assert await editor.found(slow) == []  # of what checking has found: the program is being run
     symbols = await editor.query("documentSymbol", slow)
     assert [each.name for each in symbols] == ["slow"]
     quick = editor.open("untitled:quick", "solid a { b = circle(raduis: 3) }")
     assert [d.code for d in await editor.found(quick)] == ["E0324"]
     assert not [s for s in editor.statuses if s["uri"] == slow]  # it went on waiting
-    # What checking has found is told while the program is being run.
     editor.replace(slow, "width: 1", "width: 1, breadth: 2")
     assert [d.code for d in await editor.found(slow)] == ["E0324"]
     editor.become(slow, "solid a { b = circle(radius: 3) }")
     assert (await editor.status(slow))["status"] == "solved"
-    for uri in (slow, quick):
-        editor.close(uri)
 
 
 async def test_closing_ends_what_is_done_for_a_text(editor: Editor) -> None:
     uri = editor.open("untitled:closing", SLOW)
     asked = asyncio.ensure_future(editor.ask("aidl/preview", uri=uri, show=[]))
-    await asyncio.sleep(0.3)
+    await editor.found(uri)  # of what was found without running it: by now it is being run
     editor.close(uri)
     assert await asked is None
     other = editor.open("untitled:after", "solid a { b = circle(radius: 3) }")
     assert await editor.found(other) == []
     assert not [s for s in editor.statuses if s["uri"] == uri]
-    editor.close(other)
 
 
 async def test_only_the_newest_attempt_is_made(editor: Editor) -> None:
     uri = editor.open(TELEPHONE)
     await editor.found(uri)
     attempts = [
-        asyncio.ensure_future(editor.ask("aidl/try", uri=uri, version=1, knobs={"width": 101 + n}))
-        for n in range(60)
+        asyncio.ensure_future(editor.ask("aidl/try", uri=uri, version=1, knobs={"width": 141 + n}))
+        for n in range(20)
     ]
     made = await asyncio.gather(*attempts, return_exceptions=True)
     assert made[-1]["box"][2] - made[-1]["box"][0] == pytest.approx(160.0)
@@ -164,17 +157,15 @@ async def test_only_the_newest_attempt_is_made(editor: Editor) -> None:
     assert {each.code for each in others} == {types.LSPErrorCodes.RequestCancelled.value}
     assert (await editor.ask("aidl/preview", uri=uri, show=[]))["tried"] is False
     await editor.ask("aidl/previewClose", uri=uri)
-    editor.close(uri)
 
 
 async def test_an_attempt_is_given_up_where_its_viewer_edits(editor: Editor) -> None:
     uri = editor.open("untitled:outdated", SLOW_TO_TRY)
     await editor.found(uri)
     tries = {
-        viewer: asyncio.ensure_future(editor.ask("aidl/try", uri=uri, viewer=viewer, knobs={"count": 20}))
+        viewer: asyncio.ensure_future(editor.ask("aidl/try", uri=uri, viewer=viewer, knobs={"count": 9}))
         for viewer in ("one", "other")
     }
-    await asyncio.sleep(0.1)
     refused = asyncio.ensure_future(
         editor.ask("aidl/setKnob", uri=uri, viewer="one", path="count", value=5000)
     )
@@ -183,7 +174,6 @@ async def test_an_attempt_is_given_up_where_its_viewer_edits(editor: Editor) -> 
     assert given_up.value.code == types.LSPErrorCodes.RequestCancelled.value
     assert (await tries["other"])["tried"]
     assert not (await refused)["applied"]
-    editor.close(uri)
 
 
 async def test_viewers_of_one_document_see_what_each_asked_for(editor: Editor) -> None:
@@ -206,7 +196,6 @@ async def test_viewers_of_one_document_see_what_each_asked_for(editor: Editor) -
     await editor.until(lambda: [p for p in editor.pictures if p["uri"] == uri and p["version"] == version])
     await editor.status(uri)
     assert {p["viewer"] for p in editor.pictures if p["uri"] == uri and p["version"] == version} == {"named"}
-    editor.close(uri)
 
 
 async def test_edits_of_the_text_as_it_is_follow_one_another(editor: Editor) -> None:
@@ -216,7 +205,6 @@ async def test_edits_of_the_text_as_it_is_follow_one_another(editor: Editor) -> 
     assert await asyncio.gather(*edits) == [{"applied": True}] * 3
     assert "param w = 40 in" in editor.texts[uri]
     assert editor.versions[uri] == 4
-    editor.close(uri)
 
 
 async def test_an_answer_that_edits_is_not_given_for_a_text_that_has_changed(editor: Editor) -> None:
@@ -234,7 +222,6 @@ async def test_an_answer_that_edits_is_not_given_for_a_text_that_has_changed(edi
     text = editor.texts[uri]
     edits = await editor.query("formatting", uri, options=types.FormattingOptions(4, True))
     assert edited(text, edits) == pipeline.formatted(SourceFile("a", text))[0]
-    editor.close(uri)
 
 
 async def test_what_no_text_has_is_passed_over(editor: Editor) -> None:
@@ -255,13 +242,3 @@ async def test_what_no_text_has_is_passed_over(editor: Editor) -> None:
     editor.text_document_did_open(types.DidOpenTextDocumentParams(again))
     editor.versions[uri] = 9
     assert [d.code for d in await editor.found(uri)] == ["E0324"]
-    editor.close(uri)
-
-
-async def test_a_huge_text_is_refused_in_words(editor: Editor) -> None:
-    uri = editor.open("untitled:huge", "solid a { b = circle(radius: 3) }\n" + "// no end\n" * 210_000)
-    assert "E0801" in [d.code for d in await editor.found(uri)]
-    editor.change(uri, 40, len(editor.texts[uri]), "")
-    editor.become(uri, "solid a { b = circle(radius: 3) }\n")
-    assert await editor.found(uri) == []
-    editor.close(uri)

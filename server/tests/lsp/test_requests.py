@@ -14,10 +14,9 @@ from pygls.exceptions import JsonRpcException
 from aidl_lang import pipeline
 from aidl_lang.common import resources
 from aidl_lang.common.source import SourceFile
-from server.tests.lsp.editor import EXAMPLES, TELEPHONE, Editor, edited, offset, place, stretch
+from server.tests.lsp.editor import TELEPHONE, Editor, edited, offset, place, stretch
 
 pytestmark = pytest.mark.asyncio(loop_scope="session")
-QUICK = [EXAMPLES / f"{name}.aidl" for name in ("telephone", "key")]
 WHOLE = types.Range(types.Position(0, 0), types.Position(9999, 0))
 UNSTABLE = """\
 solid plate {
@@ -38,10 +37,9 @@ async def telephone(editor: Editor) -> str:
     return uri
 
 
-@pytest.mark.parametrize("path", QUICK, ids=lambda path: path.stem)
-async def test_examples_have_the_diagnostics_that_the_command_gives(editor: Editor, path) -> None:
-    uri = editor.open(path)
-    compiled = pipeline.compile(SourceFile(path.name, editor.texts[uri]))
+async def test_an_example_has_the_diagnostics_that_the_command_gives(editor: Editor) -> None:
+    uri = editor.open(TELEPHONE)
+    compiled = pipeline.compile(SourceFile(TELEPHONE.name, editor.texts[uri]))
     found = await editor.found(uri)
     assert [(d.code, d.message.partition("\n")[0]) for d in found] == [
         (d.code, d.message) for d in compiled.diagnostics
@@ -49,7 +47,6 @@ async def test_examples_have_the_diagnostics_that_the_command_gives(editor: Edit
     status = await editor.status(uri)
     assert (status["status"], status["degrees"]) == ("solved", compiled.model.degrees)
     editor.close(uri)
-    await editor.until(lambda: editor.told[-1].uri == uri and not editor.told[-1].diagnostics)
 
 
 async def test_diagnostics_lead_to_their_pages_and_places(editor: Editor) -> None:
@@ -64,7 +61,6 @@ async def test_diagnostics_lead_to_their_pages_and_places(editor: Editor) -> Non
     assert page.startswith("file:///")
     assert page.endswith("/docs/diagnostics/W0201.md")
     assert resources.page("W0201")
-    editor.close(uri)
 
 
 async def test_related_places_are_told(editor: Editor) -> None:
@@ -72,7 +68,6 @@ async def test_related_places_are_told(editor: Editor) -> None:
     (twice,) = [d for d in await editor.found(uri) if d.related_information]
     places = [(r.location.uri, r.location.range.start.line) for r in twice.related_information]
     assert (uri, 1) in places
-    editor.close(uri)
 
 
 async def test_fixes_mend_what_is_wrong(editor: Editor) -> None:
@@ -85,7 +80,6 @@ async def test_fixes_mend_what_is_wrong(editor: Editor) -> None:
     editor.apply(fix.edit)
     assert editor.texts[uri] == "solid a { b = circle(radius: 3) }\n"
     assert await editor.found(uri) == []
-    editor.close(uri)
 
 
 async def test_actions_are_worked_out_when_they_are_chosen(editor: Editor) -> None:
@@ -100,21 +94,17 @@ async def test_actions_are_worked_out_when_they_are_chosen(editor: Editor) -> No
     editor.apply(action.edit)
     assert editor.texts[uri].count("radius") == 2
     assert "raduis" not in editor.texts[uri]
-    editor.close(uri)
 
 
 async def test_solved_values_are_written_back(editor: Editor) -> None:
     uri = await telephone(editor)
-    before = pipeline.compile(SourceFile("a", editor.texts[uri]))
     only = types.CodeActionContext([], only=[types.CodeActionKind.RefactorRewrite])
     at = types.Range(types.Position(1, 0), types.Position(1, 0))
     offered = await editor.query("codeAction", uri, range=at, context=only)
     action = next(a for a in offered if a.title == "Write solved values back as first guesses")
     editor.apply((await editor.code_action_resolve_async(action)).edit)
     assert "radius: guess(16)" in editor.texts[uri]
-    after = pipeline.compile(SourceFile("a", editor.texts[uri]))
-    assert after.drawing.box == pytest.approx(before.drawing.box, abs=1e-5)
-    assert after.status == "solved"
+    assert (await editor.status(uri))["status"] == "solved"
 
 
 async def test_fixes_are_applied_by_command(editor: Editor) -> None:
@@ -129,7 +119,6 @@ async def test_fixes_are_applied_by_command(editor: Editor) -> None:
             await editor.workspace_execute_command_async(
                 types.ExecuteCommandParams("aidl.applyFixes", arguments=arguments)
             )
-    editor.close(uri)
 
 
 async def test_definitions_here_and_in_the_library(editor: Editor) -> None:
@@ -142,12 +131,16 @@ async def test_definitions_here_and_in_the_library(editor: Editor) -> None:
     assert "/stdlib/" in shape.uri
 
 
+def widths(text: str) -> list[int]:
+    """Where the param is named: names of members and of arguments, and words of comments, are others."""
+    code = re.sub(r"//.*", lambda m: " " * len(m[0]), text)
+    return [m.start() for m in re.finditer(r"(?<![.\w])width(?![\w:])", code)]
+
+
 async def test_references_are_all_places_of_the_name(editor: Editor) -> None:
     uri = await telephone(editor)
     text = editor.texts[uri]
-    # Names of members and of arguments, and words of comments, are others.
-    code = re.sub(r"//.*", lambda m: " " * len(m[0]), text)
-    wanted = [m.start() for m in re.finditer(r"(?<![.\w])width(?![\w:])", code)]
+    wanted = widths(text)
     found = await editor.query(
         "references", editor.at(uri, "0.7 * width", 6), context=types.ReferenceContext(True)
     )
@@ -161,15 +154,15 @@ async def test_references_are_all_places_of_the_name(editor: Editor) -> None:
 
 async def test_renaming(editor: Editor) -> None:
     uri = await telephone(editor)
-    before = pipeline.compile(SourceFile("a", editor.texts[uri]))
+    wanted = editor.texts[uri]
+    for start in reversed(widths(wanted)):
+        wanted = f"{wanted[:start]}breadth{wanted[start + 5 :]}"
     where = editor.at(uri, "0.7 * width", 6)
     prepared = await editor.query("prepareRename", where)
     assert prepared.placeholder == "width"
     changes = await editor.query("rename", where, new_name="breadth")
     assert editor.apply(changes)
-    assert "param breadth = 160mm" in editor.texts[uri]
-    after = pipeline.compile(SourceFile("a", editor.texts[uri]))
-    assert after.export(".svg") == before.export(".svg")
+    assert editor.texts[uri] == wanted
     with pytest.raises(JsonRpcException, match="word of the language"):
         await editor.query("rename", editor.at(uri, "0.7 * breadth", 6), new_name="param")
 
@@ -278,15 +271,12 @@ async def test_colours(editor: Editor) -> None:
 
 async def test_completion_knows_what_follows_a_dot(editor: Editor) -> None:
     uri = await telephone(editor)
-    text = editor.texts[uri]
-    at = text.index("bottom_left + (16, 0)")
-    made = await editor.query("completion", uri, position=place(text, at))
-    labels = [item.label for item in made.items]
-    assert "bottom_left" in labels
-    assert "center" in labels
-    assert "solid" not in labels
-    item = await editor.completion_item_resolve_async(made.items[labels.index("bottom_left")])
-    assert item.text_edit.range.start == place(text, at)
+    at = place(editor.texts[uri], editor.texts[uri].index("bottom_left + (16, 0)"))
+    made = await editor.query("completion", uri, position=at)
+    items = {item.label: item for item in made.items}
+    assert {"bottom_left", "center"} <= items.keys()
+    assert "solid" not in items
+    assert items["bottom_left"].text_edit.range.start == at
 
 
 async def test_completion_is_documented_when_it_is_looked_at(editor: Editor) -> None:
@@ -296,7 +286,6 @@ async def test_completion_is_documented_when_it_is_looked_at(editor: Editor) -> 
     assert item.documentation is None
     item = await editor.completion_item_resolve_async(item)
     assert "trapezoid(" in item.documentation.value
-    editor.close(uri)
 
 
 async def test_signature_help_marks_the_argument(editor: Editor) -> None:
@@ -322,7 +311,7 @@ async def test_lenses_tell_what_is_free(editor: Editor) -> None:
     titles = {
         editor.texts[uri].split("\n")[lens.range.start.line].strip(): lens.command.title for lens in found
     }
-    degrees = pipeline.compile(SourceFile("a", editor.texts[uri])).model.degrees
+    degrees = (await editor.status(uri))["degrees"]
     assert f"solved, {degrees} degrees of freedom" in titles["assembly telephone {"]
 
 
@@ -382,7 +371,6 @@ async def test_trying_the_ends_ends_when_the_text_changes(editor: Editor) -> Non
     editor.replace(uri, "94mm", "95mm")
     with pytest.raises(JsonRpcException, match="the text has changed"):
         await asked
-    editor.close(uri)
 
 
 async def test_inlay_hints_are_the_solved_values(editor: Editor) -> None:
@@ -412,33 +400,16 @@ async def test_preview_says_where_everything_is_written(editor: Editor) -> None:
     knob = next(k for k in picture["knobs"] if k["name"] == "width")
     assert (knob["value"], knob["low"], knob["high"], knob["editable"]) == (160, 100, 240, True)
 
-    shown = await editor.ask("aidl/try", uri=uri, version=editor.versions[uri], knobs={knob["path"]: 200})
-    other = pipeline.compile(SourceFile("a", text), params={"width": 200.0})
-    assert shown["tried"]
-    assert shown["box"] == pytest.approx(other.drawing.box, abs=1e-6)
-    assert editor.texts[uri] == text
-
-    version = editor.versions[uri]
-    done = await editor.ask("aidl/setKnob", uri=uri, version=version, path=knob["path"], value=200)
-    assert done == {"applied": True}
-    assert editor.texts[uri] == text.replace("width = 160mm", "width = 200mm")
-    after = await editor.picture(uri)
-    assert after["box"] == pytest.approx(other.drawing.box, abs=1e-6)
-    refused = await editor.ask("aidl/setKnob", uri=uri, version=version + 1, path=knob["path"], value=2000)
-    assert not refused["applied"]
-    with pytest.raises(JsonRpcException):
-        await editor.ask("aidl/setKnob", uri=uri, version=version, path=knob["path"], value=150)
     await editor.ask("aidl/previewClose", uri=uri)
 
 
 async def test_exports_are_those_of_the_command(editor: Editor) -> None:
     uri = await telephone(editor)
-    await editor.found(uri)
+    compiled = pipeline.compile(SourceFile("telephone.aidl", editor.texts[uri]))
     for form in ("svg", "dxf"):
         made = await editor.ask("aidl/export", uri=uri, format=form)
         assert made["name"] == f"telephone.{form}"
-        wanted = pipeline.compile(SourceFile("telephone.aidl", editor.texts[uri])).export(f".{form}")
-        assert base64.b64decode(made["data"]) == wanted
+        assert base64.b64decode(made["data"]) == compiled.export(f".{form}")
     with pytest.raises(JsonRpcException, match="no format"):
         await editor.ask("aidl/export", uri=uri, format="gif")
 

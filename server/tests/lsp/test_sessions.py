@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
+import asyncio
 import json
+import os
 import socket
 import subprocess
-import sys
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import pytest
 
 from aidl_lang.tools.cli import main
-from aidl_lang.tools.cli.serving import find_spec
+from aidl_server.lsp import serve
 from server.tests.lsp.editor import COMMAND, ENVIRONMENT
 from server.tests.lsp.test_in_flight import SLOW
 
@@ -35,6 +36,9 @@ class Wire:
     def raw(self, data: bytes) -> None:
         self.outgoing.write(data)
         self.outgoing.flush()
+
+    def close(self) -> None:
+        self.outgoing.close()
 
     def read(self) -> dict[str, Any]:
         length = 0
@@ -58,11 +62,11 @@ class Wire:
         document = {"uri": uri, "languageId": "aidl", "version": 1, "text": text}
         self.send(method="textDocument/didOpen", params={"textDocument": document})
 
-    def diagnostics(self) -> list[dict[str, Any]]:
-        """What is told next."""
-        while (told := self.read()).get("method") != "textDocument/publishDiagnostics":
+    def diagnostics(self, uri: str) -> list[dict[str, Any]]:
+        """What is told next of a text."""
+        while (told := self.read().get("params", {})).get("uri") != uri or "diagnostics" not in told:
             pass
-        return told["params"]["diagnostics"]
+        return told["diagnostics"]
 
 
 @pytest.fixture
@@ -103,39 +107,38 @@ def test_rules_are_kept_where_clients_break_them(server: subprocess.Popen[bytes]
     wire.send(method="$/cancelRequest", params={"id": "never"})
     wire.send(id=99, result={"surprise": True})
     wire.open("solid a { b = circle(raduis: 3) }", "http://[not a uri")
-    assert [d["code"] for d in wire.diagnostics()] == ["E0324"]
-    wire.send(id=10, method="shutdown")
-    assert wire.answer(10)["result"] is None
+    assert [d["code"] for d in wire.diagnostics("http://[not a uri")] == ["E0324"]
+    wire.open(SLOW)
+    wire.diagnostics("untitled:a")  # of what was found without running it: by now it is being run
+    wire.send(id=10, method="aidl/preview", params={"uri": "untitled:a", "show": []})
     wire.send(id=11, method="shutdown")
-    assert wire.answer(11)["error"]["code"] == -32600
+    assert wire.answer(11)["result"] is None
+    wire.send(id=12, method="shutdown")
+    assert wire.answer(12)["error"]["code"] == -32600
     wire.send(method="exit")
-    assert server.wait(SECONDS) == 0
+    assert server.wait(SECONDS) == 0  # without waiting for what is run
     assert b"Traceback" not in server.stderr.read()
 
 
-def test_shutting_down_does_not_wait_for_a_solve(server: subprocess.Popen[bytes]) -> None:
-    wire = Wire(server.stdout, server.stdin)
-    wire.greet()
-    wire.open(SLOW)
-    wire.diagnostics()  # of what was found without running it: by now it is being run
-    wire.send(id=1, method="aidl/preview", params={"uri": "untitled:a", "show": []})
-    wire.send(id=2, method="shutdown")
-    assert "result" in wire.answer(2)
-    wire.send(method="exit")
-    assert server.wait(SECONDS) == 0
-    assert b"Traceback" not in server.stderr.read()
+@pytest.mark.parametrize("leave", [Wire.close, lambda wire: wire.send(method="exit")])
+def test_leaving_without_a_word(leave: Callable[[Wire], None]) -> None:
+    (incoming, told), (said, outgoing) = os.pipe(), os.pipe()
+
+    def talk(wire: Wire) -> None:
+        wire.greet()
+        wire.open(SLOW)
+        leave(wire)
+
+    async def session() -> int:
+        with open(said, "rb") as hearing, open(told, "wb") as saying:
+            serving = asyncio.create_task(serve.serve_pipes(incoming, outgoing))
+            await asyncio.to_thread(talk, Wire(hearing, saying))
+            return await serving
+
+    assert asyncio.run(session()) == 1
 
 
-def test_leaving_without_a_word(server: subprocess.Popen[bytes]) -> None:
-    wire = Wire(server.stdout, server.stdin)
-    wire.greet()
-    wire.open(SLOW)
-    server.stdin.close()
-    assert server.wait(SECONDS) == 1
-    assert b"Traceback" not in server.stderr.read()
-
-
-def test_a_client_on_a_socket_that_counts_in_bytes() -> None:
+def test_a_client_on_a_socket_that_counts_in_bytes_and_leaves() -> None:
     process = subprocess.Popen([*COMMAND, "--tcp", "127.0.0.1:0"], stderr=subprocess.PIPE, env=ENVIRONMENT)
     with process:
         address, _, words = process.stderr.readline().decode().partition(": ")
@@ -147,11 +150,14 @@ def test_a_client_on_a_socket_that_counts_in_bytes() -> None:
             wire.greet(general={"positionEncodings": ["utf-8"]})
             text = "solid a { /* 🚀ü */ b = circle(raduis: 3) }"
             wire.open(text)
-            (wrong,) = wire.diagnostics()
+            (wrong,) = wire.diagnostics("untitled:a")
             character = len(text[: text.index("raduis")].encode())
             assert wrong["range"]["start"] == {"line": 0, "character": character}
-            wire.send(method="exit")  # without a `shutdown`
-            assert process.wait(SECONDS) == 1
+            wire.open(SLOW, "untitled:slow")
+            assert wire.diagnostics("untitled:slow") == []  # of what was found without running it
+            stream.close()
+        assert process.wait(SECONDS) == 1  # while it is being run
+        assert b"Traceback" not in process.stderr.read()
 
 
 def test_an_address_that_cannot_be_served(capsys: pytest.CaptureFixture[str]) -> None:
@@ -165,28 +171,19 @@ def test_an_address_that_cannot_be_served(capsys: pytest.CaptureFixture[str]) ->
             main(["lsp", "--tcp", wrong])
 
 
-def test_without_its_packages_it_says_what_to_install(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    monkeypatch.setattr(
-        "aidl_lang.tools.cli.serving.find_spec",
-        lambda name: None if name == "aidl_server" else find_spec(name),
-    )
-    assert main(["lsp"]) == 2
-    said = capsys.readouterr().err
-    assert "E0954" in said
-    assert "aidl-lang[editor]" in said
-
-
 def test_nothing_but_the_protocol_is_on_standard_output() -> None:
-    script = (
-        "import sys, os, asyncio\n"
-        "from aidl_server.lsp import serve as wire\n"
-        "incoming, outgoing = wire.claim_standard_streams()\n"
-        "print('stray'); sys.stdout.flush(); os.write(1, b'stray')\n"
-        "os.write(outgoing, os.read(incoming, 99)); assert sys.stdin.read() == ''\n"
-    )
-    done = subprocess.run(
-        [sys.executable, "-c", script], input=b"said", capture_output=True, env=ENVIRONMENT, check=True
-    )
-    assert (done.stdout, done.stderr.count(b"stray")) == (b"said", 2)
+    kept = [os.dup(stream) for stream in range(3)]
+    (incoming, told), (said, outgoing), (stray, error) = (os.pipe() for _ in range(3))
+    try:
+        for stream, of in enumerate((incoming, outgoing, error)):
+            os.dup2(of, stream)
+        claimed, claimed_out = serve.claim_standard_streams()
+        os.write(1, b"stray")
+        os.write(told, b"said")
+        os.write(claimed_out, os.read(claimed, 99))
+        assert (os.read(said, 99), os.read(stray, 99), os.read(0, 99)) == (b"said", b"stray", b"")
+    finally:
+        for stream, of in enumerate(kept):
+            os.dup2(of, stream)
+        for of in (*kept, incoming, told, said, outgoing, stray, error, claimed, claimed_out):
+            os.close(of)

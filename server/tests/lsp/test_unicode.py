@@ -37,7 +37,6 @@ async def test_places_behind_astral_characters(editor: Editor, end: str) -> None
     changes = await editor.query("rename", uri, position=place(text, places[0] + 1), new_name="w")
     assert editor.apply(changes)
     assert editor.texts[uri] == text.replace("𝑏reite", "w")
-    editor.close(uri)
 
 
 async def test_edits_between_halves_and_behind_ends(editor: Editor) -> None:
@@ -59,7 +58,6 @@ async def test_edits_between_halves_and_behind_ends(editor: Editor) -> None:
     tokens = await editor.query("semanticTokens/full", uri)
     assert list(tokens.data[:5]) == [0, 0, 6, 0, 0]
     assert list(tokens.data[-5:]) == [1, 0, 10, 0, 0]
-    editor.close(uri)
 
 
 @pytest.mark.parametrize(
@@ -79,4 +77,3 @@ async def test_strange_characters_are_no_trouble(editor: Editor, text: str) -> N
     assert [each.name for each in symbols] == ["a"]
     line = symbols[0].selection_range.start.line
     assert line == text[: text.index("solid")].count("\n")
-    editor.close(uri)

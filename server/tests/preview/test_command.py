@@ -1,9 +1,8 @@
-"""What `aidl preview` says when it cannot serve."""
+"""What `aidl preview` and `aidl lsp` say when they cannot serve."""
 
 from __future__ import annotations
 
 import socket
-from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
@@ -19,13 +18,17 @@ def file(tmp_path: Path) -> str:
     return str(path)
 
 
+@pytest.mark.parametrize(
+    ("arguments", "code", "what"),
+    [(["preview", "part.aidl"], "E0952", "the preview"), (["lsp"], "E0954", "the server")],
+)
 def test_missing_packages_are_named(
-    file: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    arguments: list[str], code: str, what: str, monkeypatch: pytest.MonkeyPatch, capsys
 ) -> None:
-    monkeypatch.setattr(serving, "find_spec", lambda name: None if name == "aidl_server" else find_spec(name))
-    assert cli.main(["preview", file]) == 2
+    monkeypatch.setattr(serving, "find_spec", lambda name: None)
+    assert cli.main(arguments) == 2
     assert capsys.readouterr().err == (
-        "error[E0952]: the preview needs `aidl_server`, not installed here\n"
+        f"error[{code}]: {what} needs `aidl_server`, not installed here\n"
         "  = hint: pip install 'aidl-lang[editor]'\n"
     )
 

@@ -76,6 +76,28 @@ def test_what_does_not_fit_is_refused(path: str, value: float | str | bool) -> N
         set_knob(seen(KNOBS, solved=True), path, value)
 
 
+@pytest.mark.parametrize(
+    ("typed", "written"), [("22cm", "22cm"), ("100 + 2*20", "140mm"), ("9in - 1/2in", "8.5in")]
+)
+def test_what_is_typed_is_worked_out(typed: str, written: str) -> None:
+    edits = set_knob(seen(KNOBS, solved=True), "width", typed)
+    assert applied(KNOBS, edits) == KNOBS.replace("160mm", written)
+
+
+@pytest.mark.parametrize(
+    ("typed", "why"),
+    [
+        ("90deg", "`90deg` does not fit `width`: that is an angle, and it is a length"),
+        ("1m", "`width` cannot be `1000`: that is outside its range 100..240 mm"),
+        ("wide", "`wide` does not fit `width`: there is no `wide` here"),
+    ],
+)
+def test_why_it_is_refused_is_told(typed: str, why: str) -> None:
+    with pytest.raises(RefusalError) as refused:
+        set_knob(seen(KNOBS, solved=True), "width", typed)
+    assert refused.value.diagnostics[0].message == why
+
+
 def test_conflicts_name_what_they_relate() -> None:
     view = seen(
         """

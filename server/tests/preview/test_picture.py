@@ -14,12 +14,13 @@ from aidl_server.ide.preview import LAYERS, preview, svg_of
 from aidl_server.ide.preview.elements import elements
 from aidl_server.ide.workspace import View, look, run
 from server.tests.ide.conftest import seen, solved_at
+from tests.amount import some
 from tests.compiled import LIGHTER
 
 SVG = "{http://www.w3.org/2000/svg}"
 
 
-@pytest.fixture(scope="module", params=LIGHTER)
+@pytest.fixture(scope="module", params=some(LIGHTER))
 def example(request: pytest.FixtureRequest) -> View:
     return solved_at(request.param)
 

@@ -7,8 +7,8 @@ import json
 
 from playwright.sync_api import expect
 
-from server.tests.preview.conftest import Pane
-from server.tests.preview.messages import EXPORTS, URI, picture, problem, words
+from server.tests.preview.pane.conftest import Pane
+from server.tests.preview.pane.messages import EXPORTS, URI, picture, problem
 
 CODE = """
 window.sent = [];
@@ -112,7 +112,7 @@ def test_files_are_asked_for_and_saved(pane: Pane) -> None:
 # VS Code
 
 
-def test_in_vs_code_messages_go_by_its_api(open_pane) -> None:
+def test_in_vs_code_messages_go_by_its_api_and_its_colors_win(open_pane) -> None:
     pane = open_pane(script=CODE)
     pane.page.wait_for_function("() => window.sent.some(m => m.method === 'aidl/preview')")
     assert "/socket" not in pane.host.requests
@@ -126,23 +126,18 @@ def test_in_vs_code_messages_go_by_its_api(open_pane) -> None:
     assert [m["method"] for m in sent] == ["aidl/preview", "aidl/hover", "aidl/goto"]
     assert pane.page.evaluate("() => window.kept.uri") == URI
     expect(pane.find("#theme")).to_be_hidden()
-    pane.page.get_by_role("button", name="Points", exact=True).click()
-    pane.page.reload()
-    expect(pane.page.get_by_role("button", name="Points", exact=True)).to_have_attribute(
-        "aria-pressed", "true"
-    )
-
-
-def test_in_vs_code_its_colors_win(open_pane) -> None:
-    pane = open_pane(script=CODE)
     pane.page.evaluate(
         """() => {
             document.body.classList.add("vscode-dark");
             document.documentElement.style.setProperty("--vscode-sideBar-background", "rgb(1, 2, 3)");
         }"""
     )
-    background = "() => getComputedStyle(document.querySelector('.toolbar')).backgroundColor"
-    assert pane.page.evaluate(background) == "rgb(1, 2, 3)"
+    expect(pane.find(".toolbar")).to_have_css("background-color", "rgb(1, 2, 3)")
+    pane.page.get_by_role("button", name="Points", exact=True).click()
+    pane.page.reload()
+    expect(pane.page.get_by_role("button", name="Points", exact=True)).to_have_attribute(
+        "aria-pressed", "true"
+    )
 
 
 # Themes and sizes
@@ -171,6 +166,7 @@ def test_themes(pane: Pane) -> None:
 
 
 def test_everything_fits_into_narrow_windows(pane: Pane) -> None:
+    pane.writes()
     pane.shows(problems=[problem(message="a `long` " * 30)])
     for width in (320, 480, 720, 1400):
         pane.page.set_viewport_size({"width": width, "height": 800})
@@ -187,13 +183,9 @@ def test_everything_fits_into_narrow_windows(pane: Pane) -> None:
             assert box["height"] > (150 if part == "#stage" else 20)
 
 
-def test_the_drawing_is_in_sight_beside_text_problems_and_sliders(open_pane) -> None:
-    pane = open_pane(viewport={"width": 420, "height": 480})
-    pane.host.hears("aidl/preview")
-    pane.host.tell("aidl/text", words())
+def test_the_drawing_is_in_sight_beside_text_problems_and_sliders(pane: Pane) -> None:
+    pane.writes()
     pane.shows(problems=[problem(message="a `long` " * 30)])
-    pane.find("#source-toggle").click()
-    expect(pane.find(".cm-line").first).to_be_visible()
     for height in (480, 640, 800):
         pane.page.set_viewport_size({"width": 420, "height": height})
         for part in ("#source", "#knobs"):
@@ -210,6 +202,7 @@ def test_the_drawing_is_in_sight_beside_text_problems_and_sliders(open_pane) -> 
 
 
 def test_every_control_has_a_name(pane: Pane) -> None:
+    pane.writes()
     pane.shows(problems=[problem(fixes=1)])
     unnamed = pane.page.eval_on_selector_all(
         "button, input, select, [tabindex]",

@@ -16,7 +16,7 @@ from websockets.exceptions import ConnectionClosed
 from websockets.http11 import Request, Response
 from websockets.sync.server import Server, ServerConnection, serve
 
-from server.tests.preview.messages import URI
+from server.tests.preview.pane.messages import URI
 from tests.documents import ROOT
 
 PANE = ROOT / "server" / "aidl_server" / "preview" / "pane"
