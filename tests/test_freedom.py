@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from pathlib import Path
-from random import Random
 
 import numpy as np
 import pytest
@@ -249,17 +248,6 @@ def test_what_is_told_goes_on_as_it_is_told(text: str) -> None:
         missed = analysed.misses(motion, 0.5)
         assert missed <= 1e-5 or "a curve" in motion.words or motion.words == "turn", (motion, missed)
         assert missed > 1e-5 or "a curve" not in motion.words, (motion, missed)
-
-
-@tries(20)
-@given(assemblies(), st.randoms(use_true_random=False))
-def test_the_order_of_constraints_does_not_change_what_is_counted(text: str, chance: Random) -> None:
-    head, stated = text.split("constrain {\n", 1)
-    lines = stated.removesuffix("\n}\n}").split("\n")
-    chance.shuffle(lines)
-    other = head + "constrain {\n" + "\n".join(lines) + "\n}\n}"
-    degrees = [Analysed("top.aidl", each).freedom.degrees for each in (text, other)]
-    assert degrees[0] == degrees[1]
 
 
 # --- The report ------------------------------------------------------------------------------------

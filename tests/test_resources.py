@@ -81,7 +81,7 @@ def test_an_installation_without_it_says_so(checkout: Checkout) -> None:
 
 
 def test_a_package_is_built_the_same_each_time() -> None:
-    """Whatever the order of Python's sets, which Lark works with: as it was when this checkout was first used."""
+    """Whatever the order of Python's sets, which Lark works with: as this checkout has it."""
     kept = [resources.derived(part.DERIVED, part._inputs, part.built) for part in (tables, library)]
     program = (
         "from hashlib import sha256; from aidl_lang.checking import library;"

@@ -83,7 +83,7 @@ def test_no_call_breaks_the_compiler(name: str) -> None:
 
 
 SHAPES = [entry for entry in reference().entries.values() if entry.sort == "shape" and entry.doc.example]
-SHAPES = some(SHAPES)
+SHAPES = some(SHAPES, 8)
 
 
 @pytest.mark.parametrize("shape", SHAPES, ids=lambda shape: shape.name)

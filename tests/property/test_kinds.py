@@ -1,5 +1,5 @@
-"""Each kind of curve of the registry keeps relations along its whole curve: a kind that one of them does not know
-fails here.
+"""Each kind of curve of the registry keeps relations along its whole curve: a kind that one of them does not
+know fails here.
 """
 
 from __future__ import annotations
@@ -63,7 +63,8 @@ def test_two_of_a_kind_are_images_about_a_point(kind: str) -> None:
 @pytest.mark.parametrize(("relation", "turn"), [("tangent", 1), ("perpendicular", 1j)])
 def test_a_line_goes_on_from_its_end(kind: str, relation: str, turn: complex) -> None:
     found = drawn(
-        f"drawing d {{ a = {sample(kind, 12, 8)}; b = line(a.end, a.end + (6, 2))\nconstrain {relation}(a, b) }}"
+        f"drawing d {{ a = {sample(kind, 12, 8)}; b = line(a.end, a.end + (6, 2))\n"
+        f"constrain {relation}(a, b) }}"
     )
     ahead = found["a"][-1] - found["a"][-2]
     assert (turn * ahead.conjugate() * (found["b"][-1] - found["b"][0])).imag == pytest.approx(0, abs=0.02)
@@ -83,7 +84,9 @@ def test_what_it_encloses_is_measured(kind: str) -> None:
 
 @pytest.mark.parametrize("kind", CURVES)
 def test_places_along_it_are_found(kind: str) -> None:
-    found = drawn(f"drawing d {{ a = {sample(kind, 12, 8)}; b = line(a.edge_point(along: 7), fixed((0, 0))) }}")
+    found = drawn(
+        f"drawing d {{ a = {sample(kind, 12, 8)}; b = line(a.edge_point(along: 7), fixed((0, 0))) }}"
+    )
     after = np.abs(np.diff(found["a"])).cumsum()
     place = found["a"][1:][np.searchsorted(after, 7)]
     assert abs(place - found["b"][0]) == pytest.approx(0, abs=0.2)

@@ -5,24 +5,16 @@ from __future__ import annotations
 import json
 import math
 import random
-import re
-from collections.abc import Iterator, Sequence
 from itertools import pairwise
-from pathlib import Path
 from typing import Any
 
 import jsonschema
-import pytest
 from hypothesis import HealthCheck, Phase, assume, given, note, settings
 from hypothesis import strategies as st
 
 import aidl_lang
-from aidl_lang.common.source import SourceFile
-from aidl_lang.parser import parse
-from aidl_lang.syntax import ast
 from tests.amount import tries
 from tests.checker.checking import broken
-from tests.compiled import FEW
 from tests.documents import ROOT
 from tests.property.programs import Sketch, outline_text, outlines, sketches
 
@@ -104,61 +96,6 @@ def test_outlines_that_are_said_to_be_solved_are(outline: tuple[list[str], list[
 # --- (b) order does not matter ---------------------------------------------------------------------
 
 
-def reordered(text: str, chance: random.Random) -> str:
-    """The program with constraints and unrelated siblings in each other's places, in every block."""
-    module = parse(SourceFile("program.aidl", text)).module
-    return _Reordering(text, chance).statements(module.statements, 0, len(text), held=False)
-
-
-class _Reordering:
-    def __init__(self, text: str, chance: random.Random) -> None:
-        self.text, self.chance = text, chance
-
-    def statements(self, nodes: Sequence[ast.Node], start: int, end: int, held: bool) -> str:
-        """The text from `start` to `end`, in which these statements stand."""
-        movable = (
-            [i for i, n in enumerate(nodes) if not isinstance(n, ast.Let)] if held else self._free(nodes)
-        )
-        order = dict(zip(movable, self.chance.sample(movable, len(movable)), strict=True))
-        pieces = []
-        for i, node in enumerate(nodes):
-            pieces += [self.text[start : node.span.start], self._statement(nodes[order.get(i, i)], held)]
-            start = node.span.end
-        return "".join([*pieces, self.text[start:end]])
-
-    def _statement(self, node: ast.Node, held: bool) -> str:
-        held = isinstance(node, ast.Constrain) or (held and not isinstance(node, ast.Structure))
-        pieces, start = [], node.span.start
-        for block in _blocks(node):
-            first, last = block.span.start, block.span.end
-            pieces += [self.text[start:first], self.statements(block.statements, first, last, held)]
-            start = last
-        return "".join([*pieces, self.text[start : node.span.end]])
-
-    def _free(self, nodes: Sequence[ast.Node]) -> list[int]:
-        """The structures among some statements that name none of the others."""
-        found = [i for i, n in enumerate(nodes) if isinstance(n, ast.Structure) and n.parameters is None]
-        names = {i: re.compile(rf"\b{nodes[i].name.text}\b") for i in found}
-        return [
-            i
-            for i in found
-            if not any(
-                names[j].search(nodes[i].span.text) or names[i].search(nodes[j].span.text)
-                for j in found
-                if j != i
-            )
-        ]
-
-
-def _blocks(node: ast.Node) -> Iterator[ast.Block]:
-    """The outermost blocks in a node, in text order."""
-    for child in ast.children(node):
-        if isinstance(child, ast.Block):
-            yield child
-        else:
-            yield from _blocks(child)
-
-
 @given(outlines(), st.randoms(use_true_random=False))
 @profile(15)
 def test_the_order_of_geometric_constraints_does_not_matter(
@@ -180,49 +117,3 @@ def test_the_order_of_independent_structures_does_not_matter(sketch: Sketch, cha
     one, other = sketch.text(), sketch.text(parts=chance.sample(parts, len(parts)))
     note(other)
     assert apart(document(aidl_lang.compile(one)), document(aidl_lang.compile(other))) < TOLERANCE
-
-
-@pytest.mark.parametrize("path", FEW)
-def test_the_order_in_an_example_does_not_matter(path: Path) -> None:
-    text = path.read_text("utf-8")
-    one = document(aidl_lang.compile(text))
-    for seed in range(2):
-        other = reordered(text, random.Random(seed))
-        assert other != text or "constrain {" not in text
-        assert apart(one, document(aidl_lang.compile(other))) < TOLERANCE
-
-
-# --- (c) rigid parts -------------------------------------------------------------------------------
-
-
-def _distances(structure: dict[str, Any]) -> list[float]:
-    """Distances between all points of a structure's own geometry, and its radii."""
-    points, sizes = _points(structure["geometry"])
-    return sizes + [math.dist(p, q) for i, p in enumerate(points) for q in points[:i]]
-
-
-def _points(value: Any) -> tuple[list[list[float]], list[float]]:
-    points: list[list[float]] = []
-    sizes: list[float] = []
-    for name, item in value.items():
-        if name in ("radius", "rx", "ry"):
-            sizes.append(item)
-        elif name in ("at", "start", "end", "center"):
-            points.append(item)
-        elif isinstance(item, dict) and name != "params":
-            below = _points(item)
-            points, sizes = points + below[0], sizes + below[1]
-    return points, sizes
-
-
-@given(sketches())
-@profile(15)
-def test_a_part_that_its_parent_moves_keeps_its_shape(sketch: Sketch) -> None:
-    """Only relations of boxes hold a part from outside, so it moves as a whole."""
-    loose, held = (
-        document(aidl_lang.compile(text)) for text in (sketch.text(relations=["1 == 1"]), sketch.text())
-    )
-    note(sketch.text())
-    for before, after in zip(loose["root"]["structures"], held["root"]["structures"], strict=True):
-        pairs = zip(_distances(before), _distances(after), strict=True)
-        assert max((abs(a - b) for a, b in pairs), default=0.0) < TOLERANCE

@@ -15,7 +15,7 @@ from benchmarks.solver.assemblies import assembly, flattened, worst_violation
 from benchmarks.solver.cases import judge, judge_ours
 from benchmarks.solver.families import FAMILIES
 from benchmarks.solver.ours import SETTINGS, Ours
-from benchmarks.solver.race import Runner, race
+from benchmarks.solver.race import Runner
 from benchmarks.solver.sketch import TOLERANCE, Evaluator, Sketch
 
 
@@ -89,15 +89,6 @@ def test_a_case_without_a_solution_is_explained() -> None:
     verdict, why = judge_ours(sketch)
     assert verdict == "explained"
     assert "['fixed', 'fixed']" in why
-
-
-def test_a_race_of_ours() -> None:
-    sketch, _ = FAMILIES["chain"].sketch(1)
-    with Runner("ours", 60.0) as runner:
-        times = race([runner], sketch, 2, 60.0)["ours"]
-    assert times.trouble == ""
-    assert len(times.kept) == 2
-    assert 0.0 < times.solve < 60.0
 
 
 def test_who_is_too_slow_is_stopped_and_may_start_again(tmp_path: Path) -> None:
