@@ -43,13 +43,12 @@ def test_every_code_is_told_by_a_test() -> None:
     assert [code for code in CODES if code not in told] == []
 
 
-@pytest.mark.parametrize("code", CODES)
-def test_page_has_its_parts(code: str) -> None:
-    text = (PAGES / f"{code}.md").read_text(encoding="utf-8")
-    assert re.match(rf"# {code}: \S.*\n", text)
-    assert resources.title(code)
-    shown = {block.heading for block in blocks(PAGES / f"{code}.md")}
-    assert shown >= {MISTAKE, MENDED}
+def test_pages_have_their_parts() -> None:
+    for code in CODES:
+        page = PAGES / f"{code}.md"
+        assert re.match(rf"# {code}: \S.*\n", page.read_text(encoding="utf-8")), code
+        assert resources.title(code)
+        assert {block.heading for block in blocks(page)} >= {MISTAKE, MENDED}, code
 
 
 @pytest.mark.parametrize("code", [code for code in CODES if programs(PAGES / f"{code}.md")])

@@ -50,11 +50,6 @@ def test_gbnf_takes_the_same_programs(gbnf: Recogniser) -> None:
     assert [text for text in texts if gbnf.takes(text) == bool(syntax_errors(text))] == []
 
 
-@pytest.mark.slow  # it takes as many steps as all of the above
-def test_gbnf_takes_a_long_program(gbnf: Recogniser) -> None:
-    assert gbnf.takes(all_programs()["examples/bottle_opener.aidl"])
-
-
 @pytest.mark.parametrize(
     "text",
     ["letx", "x = 3y = 4", "let at = 3", "x = f (3)", "x = 0...5", "solid s {", "solidd s { }", "x = ((1)"],

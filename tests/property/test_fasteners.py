@@ -145,39 +145,3 @@ def test_names_of_the_same(call: str, same: str) -> None:
     assert area == pytest.approx(other)
     assert box == pytest.approx(others_box)
     assert counts == others
-
-
-def test_its_points_place_it() -> None:
-    """In a solid, mirrored, turned, along a line, and with its length found by constraints."""
-    found = model("""
-assembly hinge {
-    var reach = 20
-    solid leaf at fixed((0, 0)) { body = rectangle(center: fixed((0, 0)), width: 80, height: 10) }
-    pin = bolt("m6", reach)
-    solid pins { part = bolt("m6", 27) }
-    other = mirror(pins, about: y_axis)
-    level = cap_screw("m4", 20) at (0, 60) rotated 90deg
-    construction way = line(fixed((-20, 40)), fixed((20, 40)))
-    row = along(nut("m5"), way, n: 3)
-    constrain {
-        pins.part.seat == leaf.body.top_right - (10, 0)
-        pin.seat == leaf.body.top_center
-        pin.tip.y == leaf.body.bottom - 17
-        level.tip == (20, 80)
-    }
-}""")
-    assert {d.code for d in found.diagnostics} <= {"W0705"}
-    points = {
-        "hinge.pin.tip": (0, -22),
-        "hinge.pins.part.tip": (30, -22),
-        "hinge.other.part.tip": (-30, -22),
-        "hinge.pins.part.crown": (30, 9),
-        "hinge.level.part.seat": (0, 80),
-        "hinge.row[0].crown": (-20, 44.7),
-        "hinge.row[2].seat": (20, 40),
-    }
-    solved = found._compiled.model
-    every = {g.path: g.values.get("at") for s in solved.root.walk() for g in s.geometry}
-    assert set(points) <= set(every), sorted(every)
-    for path, place in points.items():
-        assert every[path] == pytest.approx(place, abs=1e-6), path

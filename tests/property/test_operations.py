@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from aidl_lang.geometry.curves import FIELDS, Curve
-from aidl_lang.geometry.solved import SolvedGeometry, SolvedStructure
+from aidl_lang.geometry.solved import SolvedStructure
 from aidl_lang.pipeline import Compiled
 from tests.amount import tries
 from tests.compiled import compiled
@@ -163,23 +163,3 @@ def test_a_mirrored_structure(
     assert_mapped(hands[1], hands[2], turn(180, (1, 2)))
     assert_covers(found, "right", "left")
     assert_covers(found, "back", "left")
-
-
-def test_the_sides_of_a_mirrored_shape_go_by_geometry() -> None:
-    """Every part whose name says a side lies on that side of the other of its kind."""
-    shapes = [s for s in SHAPES if s.startswith(("rectangle", "rounded", "trapezoid")) and "angle" not in s]
-    for shape in shapes:
-        for axis in ("x_axis", "y_axis"):
-            found = made(f"drawing d {{ let s = {shape}; c = mirror(s, about: {axis}) }}")
-            (copy,) = found.model.root.geometry
-            middle = {p.name: _middle(p) for p in copy.parts}
-            assert middle["left"][0] < middle["right"][0]
-            assert middle["bottom"][1] < middle["top"][1]
-            assert middle["top_left"][0] < middle["top_right"][0]
-            assert middle["bottom_left"][1] < middle["top_left"][1]
-
-
-def _middle(g: SolvedGeometry) -> tuple[float, float]:
-    points = [v for v in g.values.values() if isinstance(v, tuple) and len(v) == 2]
-    xs, ys = zip(*points, strict=True)
-    return sum(xs) / len(xs), sum(ys) / len(ys)
