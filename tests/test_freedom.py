@@ -279,18 +279,6 @@ def test_a_line_that_differs_in_kind_is_told_beyond_the_limit() -> None:
     ]
 
 
-def test_what_the_whole_drawing_does_is_not_told() -> None:
-    found = model(
-        "assembly a { solid p { c = circle(radius: 3) } solid q { c = circle(center: (9, 0), radius: 3) }"
-        " constrain { q.left == p.right; align_center_y(p, q) } }"
-    )
-    assert (found.degrees, report(found), found.motions) == (2, [], ())
-    assert [(way.kind, way.words) for way in found.ways] == [
-        ("place", "slide along x"),
-        ("place", "slide along y"),
-    ]
-
-
 def test_what_a_large_model_has_beside_its_ways_is_counted() -> None:
     def many(number: int) -> list[str]:
         circles = f"for i in 0..<{number} {{ c[i] = circle(center: (9 * i, 0), radius: 3) }}"

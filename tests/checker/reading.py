@@ -389,7 +389,6 @@ class Program:
     document: dict[str, Any]
     tasks: list[Task] = field(default_factory=list)
     scopes: dict[str, Scope] = field(default_factory=dict)
-    unread: list[ast.Node] = field(default_factory=list)
     views: dict[str, View] = field(default_factory=dict)
 
     @cached_property

@@ -99,8 +99,8 @@ def test_what_the_document_does_not_say_is_reported_as_unchecked() -> None:
 
 GEARS = """
 drawing drive {{
-    pinion = gear(teeth: 12, module: 2, center: fixed((0, 0)), angle: fixed(0deg))
-    wheel = gear(teeth: 20, module: 2, center: fixed(({x}, 0)), angle: fixed({angle}deg))
+    pinion = gear(teeth: 6, module: 2, center: fixed((0, 0)), angle: fixed(0deg))
+    wheel = gear(teeth: 8, module: 2, center: fixed(({x}, 0)), angle: fixed({angle}deg))
     {constraint}
 }}
 """
@@ -109,11 +109,11 @@ drawing drive {{
 @pytest.mark.parametrize(
     ("x", "angle", "constraint", "holds"),
     [
-        (32, 9, "meshes(wheel, pinion)", True),
-        (32, 0, "meshes(wheel, pinion)", False),
-        (32.01, 9, "meshes(wheel, pinion)", False),
-        (32.2, 9, "meshes(wheel, pinion, backlash: 0.2)", True),
-        (32, 8.9, "pinion.mesh(wheel)", False),
+        (14, 22.5, "meshes(wheel, pinion)", True),
+        (14, 0, "meshes(wheel, pinion)", False),
+        (14.01, 22.5, "meshes(wheel, pinion)", False),
+        (14.2, 22.5, "meshes(wheel, pinion, backlash: 0.2)", True),
+        (14, 22.4, "pinion.mesh(wheel)", False),
     ],
 )
 def test_gears_mesh_where_a_tooth_meets_a_gap(x: float, angle: float, constraint: str, holds: bool) -> None:

@@ -15,7 +15,7 @@ from aidl_lang import pipeline
 from aidl_lang.common.diagnostics import Fix, apply_fixes
 from aidl_lang.common.source import SourceFile
 from aidl_lang.explaining.failures import Conflict
-from tests.amount import tried
+from tests.amount import some, tried
 
 GAVE_WAY = frozenset({"N0601", "W0601", "W0602"})
 
@@ -244,7 +244,7 @@ def guess_fault(program: Program) -> str | None:
 
 # --- The tests -----------------------------------------------------------------------------------------
 
-BROKEN = [p for p in map(broken_program, range(40)) if p is not None][: tried(16)]
+BROKEN = some([p for p in map(broken_program, range(40)) if p is not None], 16)
 
 
 @pytest.mark.parametrize("program", BROKEN, ids=range(len(BROKEN)))

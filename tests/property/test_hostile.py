@@ -56,7 +56,13 @@ CHECKED = [
 ]  # fmt: skip
 
 
-@pytest.mark.parametrize("text", HOSTILE.values(), ids=HOSTILE.keys())
+@pytest.mark.parametrize(
+    "text",
+    [
+        pytest.param(text, id=name, marks=[pytest.mark.slow] if name == "loops in loops" else [])
+        for name, text in HOSTILE.items()
+    ],
+)  # loops go on to the limit of all turns, of which `spec/limits.md` tells
 def test_ends_soon_without_an_exception(text: str) -> None:
     start = time.monotonic()
     model = aidl_lang.compile(text)
