@@ -22,8 +22,6 @@ from tests.geometry.models import circle, model, polygon, structure
 PARAMS: dict[str, dict[str, str | float]] = {
     "telephone": {"width": 200},
     "motor_bracket": {"motor": "nema23"},
-    "key": {"pitch": 4},
-    "lighthouse": {"stripes": 4},
     "phone_stand": {"lean": 60},
 }
 

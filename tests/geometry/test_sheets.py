@@ -194,7 +194,7 @@ def test_outlines_interlock_where_boxes_cannot():
     ells = [structure("solid", f"p{k}", polygon("g", *((x + 60 * k, y) for x, y in ell))) for k in range(2)]
     drawing = drawing_of(*ells)
     assert len(laid_out(drawing, (80, 80), 2).sheets) == 2
-    layout = laid_out(drawing, (80, 80), 2, nest=0.5)
+    layout = laid_out(drawing, (80, 80), 2, nest=1)
     assert len(layout.sheets) == 1
     check(drawing, layout, (80, 80), 2)
 

@@ -5,12 +5,13 @@ from __future__ import annotations
 import re
 
 import pytest
+from llguidance import LLMatcher
 from llguidance.gbnf_to_lark import gbnf_to_lark
 
 from aidl_lang.common.resources import resource
 from aidl_lang.tools.grammars import export
 from tests.amount import TRIES_ALL
-from tests.grammars.engines import Engine, all_programs, syntax_errors
+from tests.grammars.engines import all_programs, syntax_errors
 from tests.grammars.recogniser import Recogniser
 
 SOURCE = resource("grammar/aidl.lark").read_text(encoding="utf-8")
@@ -59,7 +60,7 @@ def test_gbnf_refuses(gbnf: Recogniser, text: str) -> None:
 
 
 def test_the_converter_of_llguidance_reads_gbnf() -> None:
-    Engine(gbnf_to_lark(export("gbnf")))
+    assert LLMatcher.validate_grammar(gbnf_to_lark(export("gbnf"))) == ""
 
 
 def test_what_is_not_there_raises() -> None:
