@@ -13,7 +13,7 @@ from aidl_lang.common import resources
 from aidl_lang.common.render import render
 from aidl_lang.common.source import SourceFile
 from aidl_lang.common.world import MemoryWorld
-from tests.documents import ROOT, Block, blocks, programs
+from tests.documents import ROOT, beside, blocks, programs
 
 PAGES = ROOT / "docs" / "diagnostics"
 CODES = [path.stem for path in sorted(PAGES.glob("*.md"))]
@@ -92,11 +92,7 @@ def _compile(page: Path, heading: str) -> list[str]:
     main = next(block for block in found if not block.file)
     settings = pipeline.Settings(variant=Variant(main.variant))
     compiled = pipeline.compile(
-        SourceFile(main.place, main.text), MemoryWorld(_files(found)), settings=settings
+        SourceFile(main.place, main.text), MemoryWorld(beside(found)), settings=settings
     )
     print("\n".join(map(render, compiled.diagnostics)))
     return [d.code for d in compiled.diagnostics]
-
-
-def _files(found: list[Block]) -> dict[str, str]:
-    return {block.file: block.text for block in found if block.file}

@@ -19,7 +19,7 @@ from aidl_lang.export.job import Options
 from aidl_lang.parser import DEFAULT_LIMITS, parse
 from aidl_lang.syntax import tables
 from tests.compiled import EXAMPLES, example
-from tests.documents import ROOT, Block, programs
+from tests.documents import ROOT, Block, beside, programs
 
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md")), *sorted((ROOT / "eval").glob("*.md"))]
 # Pages on diagnostics and those made from the library have tests of their own.
@@ -33,7 +33,9 @@ BLOCKS = [
 
 @pytest.mark.parametrize("block", [pytest.param(b, id=b.place) for b in BLOCKS if b.note in ("", "error")])
 def test_program_in_documentation(block: Block) -> None:
-    compiled = pipeline.compile(SourceFile(block.place, block.text), MemoryWorld(_beside(block.path)))
+    compiled = pipeline.compile(
+        SourceFile(block.place, block.text), MemoryWorld(beside(programs(block.path)))
+    )
     errors = "\n".join(render(d) for d in compiled.diagnostics if d.is_error)
     if block.note == "error":
         assert not compiled.ok, f"{block.place} is said to show a mistake, but compiles"
@@ -108,8 +110,3 @@ def test_the_page_on_the_solver_names_all_its_files() -> None:
 def test_blocks_have_known_notes() -> None:
     known = ("", "error", "fragment")
     assert [b.place for b in BLOCKS if b.note not in known and not b.file] == []
-
-
-def _beside(page: Path) -> dict[str, str]:
-    """The programs of a page that others on it import."""
-    return {block.file: block.text for block in programs(page) if block.file}

@@ -77,6 +77,11 @@ def _places(node: ast.Node) -> list[tuple[str, int, int]]:
     return [(n.span.source.name, n.span.start, n.span.end) for n in ast.walk(node)]
 
 
+def test_only_trees_become_data() -> None:
+    with pytest.raises(TypeError, match="SourceFile is no part of a syntax tree"):
+        ast.encoded((SourceFile("", ""),))
+
+
 def test_what_is_wrong_in_the_library_is_told_and_not_kept(checkout: Path) -> None:
     (checkout / "stdlib" / "small.aidl").write_text(SMALL + "shape half_done(")
     for _ in range(2):
