@@ -1,5 +1,5 @@
 """How much the tests try: `make test` a share of the examples of each property, the same ones each time, and
-one in four cases of a corpus; `make test-all` all of them, and other examples each time, and
+one in six cases of a corpus; `make test-all` all of them, and other examples each time, and
 `AIDL_EXAMPLES=20 pytest …` twenty times as many.
 """
 
@@ -43,13 +43,15 @@ def tries(count: int, **more: Any) -> settings:
     return settings(max_examples=tried(count), **more)
 
 
-_MANY, _ONE_IN = 12, 4
+_MANY, _ONE_IN = 12, 6
 _CORPORA = (
     *(f"tests/{room}/" for room in ("checker", "drawings", "export", "geometry")),
-    *(f"tests/property/test_{name}.py" for name in ("constraints", "paths", "shapes")),
+    *(f"tests/property/test_{name}.py" for name in ("constraints", "operations", "paths", "shapes")),
     "tests/resolve/",
     "server/tests/ide/",
     "tests/solver/",
+    "tests/test_freedom.py",
+    "tests/test_measured.py",
     "dev/tests/",
     "eval/tests/",
 )
@@ -57,7 +59,7 @@ _CORPORA = (
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Marks all but one in four cases as slow, of a test of a corpus that has many."""
+    """Marks all but one in six cases as slow, of a test of a corpus that has many."""
     families: dict[str, list[pytest.Item]] = {}
     for item in items:
         if item.nodeid.startswith(_CORPORA) and item.get_closest_marker("slow") is None:

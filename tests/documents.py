@@ -57,3 +57,8 @@ def blocks(path: Path) -> Iterator[Block]:
 def programs(path: Path) -> list[Block]:
     """The AIDL blocks of a page."""
     return [block for block in blocks(path) if block.language == "aidl"]
+
+
+def beside(found: list[Block]) -> dict[str, str]:
+    """The programs that others among these import, by the names of their files."""
+    return {block.file: block.text for block in found if block.file}

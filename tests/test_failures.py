@@ -13,8 +13,6 @@ from aidl_lang import pipeline
 from aidl_lang.common.diagnostics import Diagnostic
 from aidl_lang.common.render import render, to_dict
 from aidl_lang.common.source import SourceFile, Span
-from aidl_lang.explaining.failures import _follows
-from aidl_lang.solver.problem import Failure, GroupFailure
 from tests.documents import ROOT, Block, programs
 
 UNSOLVABLE = programs(ROOT / "tests" / "spec" / "conflicts.md")
@@ -42,10 +40,10 @@ def failures_of(text: str) -> list[Diagnostic]:
 
 
 CASES = [
-    pytest.param(block, id=block.place, marks=[pytest.mark.slow] if k % 8 else [])
+    pytest.param(block, id=block.place, marks=[pytest.mark.slow] if k % 16 != 8 else [])
     for k, block in enumerate(UNSOLVABLE)
 ]
-"""An eighth of them on every run; the specs themselves hold every message, and apply every fix by itself."""
+"""A sixteenth of them on every run; the specs hold every message, and apply every fix by itself."""
 
 
 def replacements(text: str) -> Iterator[str]:
@@ -72,8 +70,8 @@ def test_what_would_fit_fits(block: Block) -> None:
 
 
 def test_it_is_said_often_what_would_fit() -> None:
-    asked = [block.text for block in UNSOLVABLE[::8] if "for " not in block.text]
-    assert sum(1 for text in asked for _ in replacements(text)) > 5
+    asked = [block.text for block in UNSOLVABLE[8::16] if "for " not in block.text]
+    assert sum(1 for text in asked for _ in replacements(text)) > 2
 
 
 TRIANGLE = """drawing d {
@@ -121,21 +119,6 @@ def test_extreme_numbers_do_not_break_the_message(value: str) -> None:
     for d in found:
         assert render(d)
         assert d.fix is not None
-
-
-def test_a_search_that_may_have_failed_for_a_failure_inside_it_is_not_told() -> None:
-    """Only what is wrong for reasons of its own: the conflict, not the structures around it."""
-    paths = ["box", "box.lid", "box.lid.knob", "boxes"]
-    conflict = GroupFailure(1, Failure.CONTRADICTORY, ())
-    found = [
-        GroupFailure(2, Failure.TIMED_OUT, ()),
-        conflict,
-        GroupFailure(1, Failure.NOT_CONVERGED, ()),
-        GroupFailure(0, Failure.TIMED_OUT, ()),
-        GroupFailure(0, Failure.OVERDETERMINED, ()),
-        GroupFailure(3, Failure.NOT_CONVERGED, ()),
-    ]
-    assert [f for f in found if not _follows(f, found, paths)] == [found[0], conflict, found[4], found[5]]
 
 
 def test_a_search_that_is_cut_short_says_so(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -24,6 +24,7 @@ from aidl_lang.syntax.tables import KINDS, load_tables
 from aidl_lang.tools.reference import full_guide, guide
 from aidl_lang.tools.reference.collect import Entry, reference
 from aidl_lang.tools.reference.signatures import split_items
+from tests.compiled import EXAMPLES
 from tests.documents import ROOT
 
 ENTRIES = list(reference().entries.values())
@@ -49,21 +50,20 @@ def test_example_runs_and_is_drawn_as_committed(entry: Entry) -> None:
     assert compiled.export(".svg") == committed.read_bytes(), "run `make reference`"
 
 
-@pytest.mark.parametrize("entry", [pytest.param(e, id=e.name) for e in ENTRIES if e.sort != "word"])
-def test_example_uses_what_it_is_about(entry: Entry) -> None:
+def test_examples_use_what_they_are_about() -> None:
     """By its name or a synonym; the example of a relation may stand in another's shoes no further."""
-    names = "|".join(map(re.escape, (entry.name, *entry.synonyms)))
-    assert re.search(rf"\b({names})\b", entry.doc.example), f"{entry.where}: the example shows something else"
+    for entry in (e for e in ENTRIES if e.sort != "word"):
+        names = "|".join(map(re.escape, (entry.name, *entry.synonyms)))
+        assert re.search(rf"\b({names})\b", entry.doc.example), f"{entry.where}: it shows something else"
 
 
-@pytest.mark.parametrize("entry", [pytest.param(e, id=e.name) for e in ENTRIES if e.sort == "builtin"])
-def test_headings_of_builtins_are_their_signatures(entry: Entry) -> None:
+def test_headings_of_builtins_are_their_signatures() -> None:
     """The same parameters, and the same ones may be left out; defaults are told by the headings alone."""
-    names = (entry.name, *(name for name in entry.synonyms if name in builtins.SIGNATURES))
-    declared = {(name, _declared(s)) for name in names for s in builtins.SIGNATURES[name] if s.parameters}
-    headed = {(o.form.partition("(")[0], _headed(o.form)) for o in entry.overloads if o.node is None}
-    if declared:
-        assert headed == declared
+    for entry in (e for e in ENTRIES if e.sort == "builtin"):
+        names = (entry.name, *(name for name in entry.synonyms if name in builtins.SIGNATURES))
+        declared = {(name, _declared(s)) for name in names for s in builtins.SIGNATURES[name] if s.parameters}
+        headed = {(o.form.partition("(")[0], _headed(o.form)) for o in entry.overloads if o.node is None}
+        assert headed == declared or not declared, entry.name
 
 
 def _declared(signature: builtins.Signature) -> tuple[tuple[str, bool], ...]:
@@ -94,9 +94,10 @@ def test_synonyms_lead_to_something() -> None:
     assert sorted(alias for alias, target in known.aliases.items() if target not in callable_) == []
 
 
-@pytest.mark.parametrize("path", sorted((ROOT / "examples").glob("*.aidl")), ids=lambda p: p.name)
-def test_examples_use_public_names_only(path: Path) -> None:
-    assert _private_names(path.read_text("utf-8")) == set()
+def test_examples_and_the_guide_use_public_names_only() -> None:
+    texts = [path.read_text("utf-8") for path in EXAMPLES]
+    texts += re.findall(r"```aidl\n(.*?)```", guide(), flags=re.DOTALL)
+    assert set().union(*map(_private_names, texts)) == set()
 
 
 def _private_names(text: str) -> set[str]:
@@ -155,11 +156,6 @@ def test_guide_names_nothing_that_does_not_exist() -> None:
     prose = re.sub(r"```aidl.*?```", "", template(), flags=re.DOTALL)
     called = set(re.findall(r"\b([a-z_]\w*)\(", prose))
     assert called - known - {"f"} == set()
-
-
-def test_programs_of_the_guide_use_public_names_only() -> None:
-    for program in re.findall(r"```aidl\n(.*?)```", guide(), flags=re.DOTALL):
-        assert _private_names(program) == set()
 
 
 def test_full_guide_holds_every_entry() -> None:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
-from typing import Any
 
 from tests.documents import ROOT
 
@@ -38,27 +37,28 @@ curves.FORMULAS["bow"] = curves.Formulas(pieces=pieces)
 from aidl_lang import pipeline
 from aidl_lang.common.source import SourceFile
 
-compiled = pipeline.compile(SourceFile("p.aidl", PROGRAM))
-told = [f"{d.code} {d.message}" for d in compiled.diagnostics]
-print(json.dumps([told, json.loads(compiled.export(".json")) if compiled.drawing else None]))
+found = []
+for program in PROGRAMS:
+    compiled = pipeline.compile(SourceFile("p.aidl", program))
+    told = [f"{d.code} {d.message}" for d in compiled.diagnostics]
+    found.append([told, json.loads(compiled.export(".json"))["root"]["geometry"] if compiled.drawing else {}])
+print(json.dumps(found))
 """
+PROGRAMS = (
+    "drawing d { b = bow((0, 0), (9, 0), rise: 4); c = mirror(b, about: y_axis)\n"
+    "t = copy(b, angle: 90deg); constrain { b.top == 6; b.end.y == 1; b.start.x == 2 } }",
+    "drawing d { b = bow((0, 0), (9, 0), rise: -4) }",
+    "solid s { floor = line((0, 0), (9, 0)); b = bow((0, 0.001), (9, 0), rise: 4) }",
+)
 
 
-def _compiled(program: str) -> tuple[list[str], dict[str, Any]]:
-    """What is said of a program, and its geometry by path, where there is such a kind."""
-    script = NEW.replace("PROGRAM", repr(program))
+def test_it_is_solved_copied_and_written_and_messages_speak_of_its_fields() -> None:
+    """What is said of each program where there is such a kind, and its geometry."""
+    script = NEW.replace("PROGRAMS", repr(PROGRAMS))
     done = subprocess.run(
         [sys.executable, "-c", script], cwd=ROOT, capture_output=True, text=True, check=True
     )
-    told, document = json.loads(done.stdout)
-    return told, {} if document is None else document["root"]["geometry"]
-
-
-def test_it_is_solved_copied_and_written() -> None:
-    told, found = _compiled(
-        "drawing d { b = bow((0, 0), (9, 0), rise: 4); c = mirror(b, about: y_axis)\n"
-        "t = copy(b, angle: 90deg); constrain { b.top == 6; b.end.y == 1; b.start.x == 2 } }"
-    )
+    (told, found), (of_negative, _), (of_gap, _) = json.loads(done.stdout)
     assert told == []
     start, end, rise, turn = found["b"]["params"].values()
     assert found["b"]["type"] == "bow"
@@ -73,12 +73,7 @@ def test_it_is_solved_copied_and_written() -> None:
     assert found["c"]["parts"]["edge[0]"]["end"] == [-start[0], top]
     assert found["t"]["params"]["turn"] == 90
 
-
-def test_messages_speak_of_the_fields_that_it_has() -> None:
-    told, _ = _compiled("drawing d { b = bow((0, 0), (9, 0), rise: -4) }")
-    assert told == ["E0515 the rise of this bow is -4, and sizes are never negative"]
-    told, found = _compiled("solid s { floor = line((0, 0), (9, 0)); b = bow((0, 0.001), (9, 0), rise: 4) }")
-    assert found
-    assert [t for t in told if t.startswith("N0708")] == [
+    assert of_negative == ["E0515 the rise of this bow is -4, and sizes are never negative"]
+    assert [t for t in of_gap if t.startswith("N0708")] == [
         "N0708 a gap of 0.001 mm between `b.start` and `floor.start` at (0, 0) was closed in solid `s`"
     ]

@@ -103,14 +103,14 @@ def corpus() -> dict[str, str]:
 def test_programs_are_taken_or_told_what_the_variant_lacks(variant: Variant) -> None:
     """A program that is right in the whole language is wrong for no other reason, and else draws the same."""
     taken = 0
-    for name, text in some([*corpus().items()]):
+    for name, text in some([*corpus().items()], 8):
         found = compiled(text, variant)
         errors = {d.code for d in found.diagnostics if d.is_error}
         assert errors <= CODES[variant], f"{name}\n" + "\n".join(map(render, found.diagnostics))
         if not errors:
             taken += 1
             assert found.export(".json") == compiled(text, Variant.FULL).export(".json"), name
-    assert 3 < taken < len(some([*corpus()]))
+    assert 1 < taken < len(some([*corpus()], 8))
 
 
 @tries(25)

@@ -5,12 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cache, cached_property
 from inspect import signature
 from typing import Any
 
 from aidl_lang.checking import library
 from aidl_lang.checking.binding import PARAMETERS
+from aidl_lang.checking.types import Signature
 from aidl_lang.syntax import ast
 from tests.checker import measures
 from tests.checker.measures import FUNCTIONS, is_line, items
@@ -180,7 +181,8 @@ class View:
             if found is not None and (
                 here.outer is not None or fold(name) not in FUNCTIONS.keys() | RELATIONS
             ):
-                return next((f for f in found if _fits(f, values)), found[0]), here
+                nodes = [f.node if isinstance(f, Signature) else f for f in found]
+                return next((n for n in nodes if _fits(n, values)), nodes[0]), here
         return None
 
     def call(self, e: ast.Call, scope: Scope) -> Any:
@@ -353,6 +355,21 @@ def respelled(meaning: Callable[..., Any], given: dict[str, Any]) -> dict[str, A
     return found
 
 
+_CALLED = (ast.FunctionDefinition, ast.ConstraintDefinition, ast.Structure)
+
+
+@cache
+def _standard() -> Scope:
+    """What the library defines."""
+    known, top = library.load(), Scope()
+    top.names |= {name: Waiting(let.value, top) for name, let in known.constants.items()}
+    top.names |= {f"{fold(name)}=": target for name, target in known.aliases.items()}
+    for name, overloads in known.callables.items():
+        if called := [each for each in overloads if each.kind in _CALLED]:
+            top.names.setdefault(f"{fold(name)}()", []).extend(called)
+    return top
+
+
 # --- The walk over a program --------------------------------------------------------------------------
 
 
@@ -372,7 +389,6 @@ class Program:
     document: dict[str, Any]
     tasks: list[Task] = field(default_factory=list)
     scopes: dict[str, Scope] = field(default_factory=dict)
-    unread: list[ast.Node] = field(default_factory=list)
     views: dict[str, View] = field(default_factory=dict)
 
     @cached_property
@@ -387,10 +403,7 @@ class Program:
     def read(self, module: ast.Module) -> Program:
         roots = [s for s in module.statements if isinstance(s, ast.Structure) and s.parameters is None]
         others = tuple(s for s in module.statements if s not in roots)
-        top = Scope()
-        for each in library.load().modules:
-            self._declare(each.statements, top)
-        top = top.inside()
+        top = _standard().inside()
         says = ast.Constrain | ast.ExpressionStatement | ast.Assign | ast.For
         if len(roots) != 1 or any(isinstance(s, says) for s in others):
             self._enter(self.root, module.statements, top)
@@ -412,7 +425,7 @@ class Program:
                     scope.names[name.text] = Waiting(value, scope)
                 case ast.Structure(parameters=None):
                     pass
-                case ast.FunctionDefinition() | ast.ConstraintDefinition() | ast.Structure():
+                case _ if isinstance(s, _CALLED):
                     scope.names.setdefault(f"{fold(s.name.text)}()", []).append(s)
                 case ast.Alias(name, target):
                     scope.names[f"{fold(name.text)}="] = target.text

@@ -93,22 +93,20 @@ def test_kept_sizes_change_only_where_the_program_says_they_must(path: Path) -> 
     assert changed == allowed
 
 
-def _statements() -> list[tuple[str, ast.Node]]:
-    return [(m.source.name, s) for m in library.load().modules for s in m.statements]
-
-
 def _public(kind: type, *files: str) -> set[str]:
     """The documented definitions of a kind, of some files or of all."""
     return {
-        s.name.text
-        for name, s in _statements()
-        if isinstance(s, kind) and s.doc and (not files or name.rpartition("/")[2] in files)
+        name
+        for name, overloads in library.load().callables.items()
+        for s in overloads
+        if s.kind is kind and s.node.doc
+        if not files or s.node.span.source.name.rpartition("/")[2] in files
     }
 
 
 def _called(nodes: Iterable[ast.Node]) -> set[str]:
     """The names of all calls, by the library's name for each."""
-    other = {fold(s.name.text): s.target.text for _, s in _statements() if isinstance(s, ast.Alias)}
+    other = {fold(name): target for name, target in library.load().aliases.items()}
     names = {n.callee.text for n in nodes if isinstance(n, ast.Call)}
     return names | {other[fold(name)] for name in names if fold(name) in other}
 

@@ -168,7 +168,7 @@ OUTLINES = {
 
 
 @pytest.mark.parametrize("kind", OUTLINES)
-@tries(20)
+@tries(12)
 @given(st.integers(60, 90), st.integers(40, 60), st.integers(3, 15), st.integers(1, 10), st.integers(7, 30))
 def test_rivets_are_their_inset_within_an_outline(
     kind: str, w: int, h: int, r: int, inset: int, n: int

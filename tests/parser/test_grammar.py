@@ -21,10 +21,6 @@ step weight todo at rotated and or not true false
 RESERVED = WORDS.split()
 
 
-def test_lark_takes_it_strictly() -> None:
-    Lark(GRAMMAR, parser="lalr", strict=True, start="module")
-
-
 @pytest.mark.parametrize(
     ("feature", "pattern"),
     [

@@ -8,14 +8,12 @@ from pathlib import Path
 import pytest
 
 from aidl_lang.common.diagnostics import Diagnostic, apply_fixes
-from aidl_lang.common.resources import resource
 from aidl_lang.common.source import SourceFile
 from aidl_lang.parser import parse
 from aidl_lang.syntax import ast
 from aidl_lang.syntax.printer import format_expression, format_statement
 from tests.documents import blocks
 
-PAGES = sorted(page for kind in "EW" for page in resource("docs/diagnostics").glob(f"{kind}01*.md"))
 ROWS = {
     block.heading: [line.replace("⏎", "\n").split("  →  ") for line in block.text.splitlines()]
     for block in blocks(Path(__file__).with_name("reading.md"))
@@ -73,13 +71,6 @@ def test_mistake(text: str, wanted: str) -> None:
 def test_fix(text: str, wanted: str) -> None:
     source = SourceFile("", text)
     assert apply_fixes(source, parse(source).diagnostics)[0] == wanted
-
-
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
-def test_page(page: Path) -> None:
-    mistake, mended = (block.text for block in blocks(page) if block.language == "aidl")
-    assert [d.code for d in found(mistake)] == [page.stem]
-    assert not found(mended)
 
 
 BROKEN = "let a = )|solid a b c|for in {|if { }|import 5|alias a|fn f = 3|@|x = [for]|a[|."

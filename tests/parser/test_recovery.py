@@ -86,11 +86,11 @@ def test_a_number_with_a_unit_is_given_no_second_one() -> None:
 
 def test_limits() -> None:
     assert codes("x" * 2_000_001) == ["E0801"]
-    assert codes("let a = " + "(" * 100_000) == ["E0802"]
+    assert codes("let a = " + "(" * 10_000) == ["E0802"]
     assert codes("let a = " + "1 + " * 1000 + "1") == ["E0802"]
-    assert codes("let a = " + "-" * 100_000 + "1") == ["E0802"]
+    assert codes("let a = " + "-" * 10_000 + "1") == ["E0802"]
     assert codes("let a = " + "(" * 90 + "1" + ")" * 90) == []
-    assert codes("solid a { " * 10_000)[-1] == "E0802"
+    assert codes("solid a { " * 1_000)[-1] == "E0802"
     assert codes("let = 3\n" * 1000)[-1] == "E0104"
     assert codes("}\n" * 1000)[-1] == "E0803"
     source = SourceFile("", "let a = [[[[1]]]]")
@@ -98,5 +98,5 @@ def test_limits() -> None:
 
 
 def test_much_text_is_read() -> None:
-    text = "let a = [" + "1, " * 20_000 + "]\n"
+    text = "let a = [" + "1, " * 4_000 + "]\n"
     assert codes(text) == []

@@ -82,7 +82,7 @@ def assert_same(text: str, orders: Sequence[Sequence[str]], *, strict: bool = Fa
 
 
 @given(sketches(), st.sampled_from(TOLD), st.booleans(), ORDERS)
-@tries(60)
+@tries(20)
 def test_the_order_of_reading_does_not_matter(
     sketch: Sketch, told: str, strict: bool, order: list[str]
 ) -> None:

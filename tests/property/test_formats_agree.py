@@ -134,7 +134,7 @@ def alternating(outlines: Iterable[Polygon]) -> BaseGeometry:
     ["drawing { f = logo(center: (-30, 0), filled: true) }"],
     [],
 )
-@tries(24)
+@tries(16)
 @given(
     st.lists(file_shapes(), min_size=1, max_size=4),
     st.lists(areas(), min_size=1, max_size=5),

@@ -9,9 +9,11 @@ from pathlib import Path
 import pytest
 
 import aidl_lang
+from tests.amount import TRIES_ALL
+from tests.compiled import FEW
 
 LONGEST = 30.0
-"""Seconds; generous for a busy machine, little for an endless loop."""
+"""Seconds of the processor: however busy the machine is."""
 
 DOUBLING = "\n".join(f"let a{i} = a{i - 1} + a{i - 1}" for i in range(1, 40))
 
@@ -36,10 +38,33 @@ def _written() -> dict[str, str]:
 
 HOSTILE = _written() | GENERATED
 
+CHECKED = [
+    "solid s { let x = " + "(" * 90 + "1" + ")" * 90 + " }",
+    "solid s { let x = " + "+".join("x1" for _ in range(90)) + " }",
+    "solid s { let x = [" + ", ".join(f"({i}, {i})" for i in range(2_000)) + "] }",
+    "solid s {\n" + "\n".join(f"let v{i} = v{i + 1}" for i in range(2_000)) + "\nlet v2000 = 1 }",
+    "solid s {\n" + "\n".join(f"let v{i} = v{i + 1} + v{(i * 7) % 900}" for i in range(900)) + " }",
+    "\n".join(f"solid s{i} {{ r = circle(radius: {i}) }}" for i in range(600)),
+    "fn f(n) = f(n)\nfn g(n) = h(n)\nfn h(n) = g(n)\nsolid s { let x = f(1) + g(2) }",
+    "shape f(n) { inner = f(n) }\nsolid s { a = f(1)\n let x = a.inner.inner.inner.n }",
+    "solid t(n) { inner = t(n) }\nsolid s { a = t(1)\n let x = a.inner.inner.inner.n }",
+    "alias circle = circle\nsolid s { a = circle(radius: 3) }",
+    "solid s { s = s\n a = a.a\n hole s { s = s } }",
+    "for i in 0..3 { for i in i { i[i] = i } }",
+    "constrain constrain constrain { } = { }",
+    "solid s { param p = p in p..p step p }",
+]  # fmt: skip
 
-@pytest.mark.parametrize("text", HOSTILE.values(), ids=HOSTILE.keys())
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        pytest.param(text, id=name, marks=[pytest.mark.slow] if name == "loops in loops" else [])
+        for name, text in HOSTILE.items()
+    ],
+)  # loops go on to the limit of all turns, of which `spec/limits.md` tells
 def test_ends_soon_without_an_exception(text: str) -> None:
-    start = time.monotonic()
+    start = time.process_time()
     model = aidl_lang.compile(text)
     if model.status == "wrong":
         assert any(d.is_error for d in model.diagnostics)
@@ -47,7 +72,19 @@ def test_ends_soon_without_an_exception(text: str) -> None:
         aidl_lang.check(text)  # what is wrong was found by the same steps
         json.loads(model.to_json())
         assert model.to_svg().startswith(("<?xml", "<svg"))
-    assert time.monotonic() - start < LONGEST
+    assert time.process_time() - start < LONGEST
+
+
+@pytest.mark.parametrize("text", CHECKED, ids=range(len(CHECKED)))
+def test_is_checked_without_an_exception(text: str) -> None:
+    assert all(d.code for d in aidl_lang.check(text))
+
+
+@pytest.mark.parametrize("path", FEW)
+def test_every_prefix_of_a_program_is_survived(path: Path) -> None:
+    text = path.read_text("utf-8")
+    for end in range(0, len(text), 37 if TRIES_ALL else 149):
+        aidl_lang.check(text[:end])
 
 
 @pytest.mark.parametrize("value", ["nan", "inf", "-inf", "1e400", "", "x", "0/0", "1e-400", "-1", "999"])

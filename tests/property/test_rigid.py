@@ -111,7 +111,7 @@ def least_inside(problem: Lowered, parts: list[str]) -> tuple[int, int]:
 
 
 @given(st.integers(0, 1_000_000))
-@tries(240)
+@tries(120)
 def test_parts_move_whole(seed: int) -> None:
     text, beams = picture(seed)
     solution = solved(text)

@@ -241,14 +241,13 @@ def test_figures_of_bezier_curves(call: str, data: st.DataObject) -> None:
 def signatures() -> list[tuple[str, frozenset[str], frozenset[str]]]:
     """Of each overload of a public shape: its name, the parameters that it needs, and all of them."""
     found = []
-    for module in library.load().modules:
-        if re.search(rf"\b{SHAPES}\.aidl$", module.source.name):
-            kinds = ast.ShapeDefinition | ast.FunctionDefinition
-            callables = [s for s in module.statements if isinstance(s, kinds)]
-            public = {c.name.text for c in callables if c.doc} | {"cross"}
-            for c in (c for c in callables if c.name.text in public):
-                needed = frozenset(p.name.text for p in c.parameters if p.default is None)
-                found.append((c.name.text, needed, frozenset(p.name.text for p in c.parameters)))
+    for name, overloads in library.load().callables.items():
+        nodes = [s.node for s in overloads if s.kind in (ast.ShapeDefinition, ast.FunctionDefinition)]
+        nodes = [n for n in nodes if re.search(rf"\b{SHAPES}\.aidl$", n.span.source.name)]
+        if name == "cross" or any(n.doc for n in nodes):
+            for parameters in ([(p.name.text, p.default) for p in n.parameters] for n in nodes):
+                needed = frozenset(word for word, default in parameters if default is None)
+                found.append((name, needed, frozenset(word for word, _ in parameters)))
     return found
 
 

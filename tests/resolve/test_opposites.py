@@ -8,7 +8,7 @@ import re
 import pytest
 
 from aidl_lang.checking import library
-from aidl_lang.common.names import nearest
+from aidl_lang.common.names import is_slip, nearest
 from aidl_lang.common.source import SourceFile
 from aidl_lang.pipeline import check
 
@@ -82,7 +82,7 @@ def misspelt() -> list[tuple[str, str]]:
     names = sorted(n for n in library.load().callables if set(n.split("_")) & set(pairs) and len(n) > 4)
     found = []
     for name in names:
-        for _ in range(6):
+        for _ in range(3):
             k = chance.randrange(len(name) - 1)
             rest = name[k + 2 :]
             changed = (name[k + 1] + rest, 2 * name[k] + name[k + 1] + rest, name[k + 1] + name[k] + rest)
@@ -106,7 +106,7 @@ def test_what_is_no_condition_is_not_offered_as_one() -> None:
 def test_a_slip() -> None:
     meant = dict(misspelt())
     found = offered(list(meant))
-    assert len(found) > 200
+    assert len(found) > 100
     right = 0
     for slip, said in found.items():
         words = set(re.split(r"[_ ]", said))
@@ -115,3 +115,23 @@ def test_a_slip() -> None:
             own = {a, b} & set(meant[slip].split("_"))
             assert len(own) != 1 or not words & ({a, b} - own), (slip, meant[slip], said)
     assert right > 0.8 * len(found)
+
+
+SLIPS = "raduis radius, gpa gap, Hole_2 hole2, hloe2 hole2, part_nmber_7 part_number_7, rectanlge rectangle"
+OTHERS = "hole3 hole2, hole hole2, plate12 plate21, x10 s10, i pi, l1 r1, ab ac, same_center_x same_center"
+
+
+def test_a_letter_that_is_wrong_is_no_other_name() -> None:
+    assert all(is_slip(*pair.split()) for pair in SLIPS.split(", "))
+    assert not any(is_slip(*pair.split()) for pair in OTHERS.split(", "))
+
+
+@pytest.mark.parametrize("name", ["hole3", "hole12"])
+def test_a_member_that_is_not_there_is_no_other_member(name: str) -> None:
+    text = (
+        "solid s {\n    hole1 = circle(radius: 3)\n    hole2 = circle(center: (9, 0), radius: 3)\n"
+        f"    constrain {name}.radius == 4\n}}\n"
+    )
+    (found,) = [d for d in check(SourceFile("s.aidl", text)) if d.code == "E0201"]
+    assert found.fix is None
+    assert "did you mean `hole" in found.message

@@ -11,8 +11,8 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from aidl_lang.solver import Settings, Solution, solve
-from aidl_lang.solver.conflicts import WORK, shortfall
+from aidl_lang.solver import Settings, Solution, conflicts, solve
+from aidl_lang.solver.conflicts import shortfall
 from aidl_lang.solver.problem import GroupFailure
 from tests.amount import TRIES_ALL, tries
 
@@ -92,24 +92,6 @@ class Distances:
         return m
 
 
-def random_distances(seed: int) -> Distances:
-    """More distances than the points allow, or such that no triangle closes."""
-    rng = np.random.default_rng(seed)
-    count, held = int(rng.integers(3, 6)), int(rng.integers(0, 3))
-    pairs = [pair for pair in combinations(range(count), 2) if pair[1] >= held]
-    rng.shuffle(pairs)
-    pairs = [tuple(pair) for pair in pairs]
-    return Distances(rng.uniform(-10, 10, (count, 2)), held, pairs, rng.uniform(2, 20, len(pairs)))
-
-
-@pytest.mark.slow  # each kind of conflict is found above and below
-def test_most_conflicts_of_distances_are_found() -> None:
-    failures = [f for seed in range(20) for f in solve(random_distances(seed).model().problem()).failures]
-    proven = [f for f in failures if f.reason != "not converged"]
-    assert len(failures) > 15
-    assert len(proven) > 0.9 * len(failures)
-
-
 # -- what is said of them
 
 
@@ -131,16 +113,17 @@ def test_without_time_what_did_not_hold_is_named() -> None:
     assert all(member.off > 0.0 for member in failure.members)
 
 
-def test_explanations_keep_to_their_budget() -> None:
+def test_explanations_keep_to_their_budget(monkeypatch: pytest.MonkeyPatch) -> None:
+    count, budget = (10, conflicts.WORK) if TRIES_ALL else (6, 1_000)
+    monkeypatch.setattr(conflicts, "WORK", budget)
     m = Model()
-    count = 10 if TRIES_ALL else 8
     points = [m.point(10.0 * i, float(i % 3)) for i in range(count)]
     for a, b in combinations(range(count), 2):
         m.equal(distance(points[a], points[b]) - 7.0 - (a + b) % 5)
     failures = solve(m.problem()).failures
     assert failures
     whole = len(m.constraints) * len(m.initial)
-    assert 0 < sum(failure.work for failure in failures) <= WORK + 10 * whole
+    assert 0 < sum(failure.work for failure in failures) <= budget + 10 * whole
 
 
 # -- large ones
@@ -148,11 +131,11 @@ def test_explanations_keep_to_their_budget() -> None:
 
 def test_a_long_chain_is_a_conflict_in_all_its_links() -> None:
     m = Model()
-    at = [m.unknown(10.0 * i) for i in range(150)]
+    at = [m.unknown(10.0 * i) for i in range(100)]
     chain = [m.equal(at[0] - 0.0)]
     chain += [m.equal(after - before - 10.0) for before, after in pairwise(at)]
     aside = [m.equal(m.unknown(1.0) - x - 3.0) for x in at]
-    chain.append(m.equal(at[-1] - 1500.0))
+    chain.append(m.equal(at[-1] - 1000.0))
     failure = only_failure(solve(m.problem()))
     assert failure.minimal
     assert failure.reason == "contradictory"
@@ -162,13 +145,13 @@ def test_a_long_chain_is_a_conflict_in_all_its_links() -> None:
 
 def test_a_distance_in_a_long_strip_conflicts_with_its_neighbours() -> None:
     rng = np.random.default_rng(3)
-    points = np.column_stack([10.0 * np.arange(60), np.resize([0.0, 8.0], 60)]) + rng.normal(size=(60, 2))
-    pairs = [(i - k, i) for i in range(60) for k in (1, 2) if i - k >= 0]
+    points = np.column_stack([10.0 * np.arange(40), np.resize([0.0, 8.0], 40)]) + rng.normal(size=(40, 2))
+    pairs = [(i - k, i) for i in range(40) for k in (1, 2) if i - k >= 0]
     lengths = np.array([float(np.linalg.norm(points[a] - points[b])) for a, b in pairs])
-    broken = pairs.index((29, 30))
+    broken = pairs.index((19, 20))
     lengths[broken] += 40.0
     failures = solve(Distances(points, 0, pairs, lengths).model().problem()).failures
-    triangles = [{(28, 29), (28, 30), (29, 30)}, {(29, 30), (29, 31), (30, 31)}]
+    triangles = [{(18, 19), (18, 20), (19, 20)}, {(19, 20), (19, 21), (20, 21)}]
     assert failures
     for failure in failures:
         assert failure.minimal

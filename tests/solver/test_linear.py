@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.sparse import csr_array
 
-from aidl_lang.solver import linear, valuation
+from aidl_lang.solver import linear
 from aidl_lang.solver.sparse import SparseMatrix
 from tests.amount import tries
 
@@ -131,19 +131,3 @@ def test_many_inequalities_enter_together_and_end_at_the_same_point(seed: int) -
         assert np.abs(found.point - one_by_one.point).max() <= 1e-8
         assert (matrix @ found.point - y)[3:].max() <= 1e-9
         assert found.multipliers[3:].min() >= -1e-12
-
-
-@given(st.integers(1, 40), st.lists(st.tuples(st.integers(0, 39), st.integers(0, 39))))
-@tries(60)
-def test_components(count: int, links: list[tuple[int, int]]) -> None:
-    links = [(a % count, b % count) for a, b in links]
-    pairs = np.array(links, dtype=np.int64).reshape(-1, 2)
-    labels = valuation.components(pairs[:, 0], pairs[:, 1], count).tolist()
-    sets = [{i} for i in range(count)]
-    for a, b in links:
-        joined = next(s for s in sets if a in s) | next(s for s in sets if b in s)
-        sets = [s for s in sets if a not in s and b not in s] + [joined]
-    assert {frozenset(i for i in range(count) if labels[i] == label) for label in labels} == set(
-        map(frozenset, sets)
-    )
-    assert sorted(set(labels)) == list(range(len(sets)))

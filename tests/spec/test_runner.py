@@ -32,11 +32,6 @@ def problems(tmp_path: Path, text: str) -> list[Problem]:
     return [problem for case in cases(tmp_path, text) for problem in run(case).problems]
 
 
-def test_right_expectations_pass(tmp_path: Path) -> None:
-    text = PROGRAM.replace("EXPECTED", f"  // {NOTE}")
-    assert problems(tmp_path, text + "\n```expect\nd.c.radius == 16\nstatus: solved\n```\n") == []
-
-
 def test_unexpected_diagnostic_is_told_with_its_line(tmp_path: Path) -> None:
     assert problems(tmp_path, PROGRAM.replace("EXPECTED", "")) == [Problem(6, f"comes unexpected: {NOTE}")]
 
