@@ -18,6 +18,11 @@ from tests.llm.conftest import _nothing_in_the_environment as _nothing_in_the_en
 HERE = Path(__file__).parent
 
 
+@pytest.fixture(autouse=True)
+def _a_terminal_as_wide_as_pages_have_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("COLUMNS", "110")
+
+
 def consoles(page: str) -> list[object]:
     """The transcripts of a page, each with the heading that it stands under."""
     found = [block for block in blocks(HERE / page) if block.language == "console"]
