@@ -516,11 +516,11 @@ def _stretches(curve: Geometry, here: Structure) -> list[_Pair]:
     if curve.type == "arc":
         return [(_arc(curve, here), _arc(curve, here, reverse=True))]
     of = _of_ellipse(curve, here) if curve.type == "ellipse" else pieces(curve, here)
-    pairs = [(_walk(piece), _walk(piece[::-1])) for piece in of]
+    pairs = [(_stretch(piece), _stretch(piece[::-1])) for piece in of]
     return [pair for pair in pairs if isinstance(pair[0], Stretch) or pair[0].length.value > 0]
 
 
-def _walk(piece: Piece) -> Stretch | Cubic:
+def _stretch(piece: Piece) -> Stretch | Cubic:
     if len(piece) == 4:
         return Cubic(piece)
     start, end = piece
