@@ -9,7 +9,6 @@ import unicodedata
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
-from datetime import UTC, datetime
 from functools import cached_property
 from io import FileIO
 from pathlib import Path
@@ -118,13 +117,6 @@ def rater_named(text: object) -> str | None:
     return name if _RATER.fullmatch(name) else None
 
 
-def now() -> str:
-    return datetime.now(UTC).strftime("%Y-%m-%dT%H:%M:%SZ")
-
-
-# --- the file -------------------------------------------------------------------------------------
-
-
 class Answers:
     """The answers in a folder. Others may write to it at the same time."""
 
@@ -173,9 +165,6 @@ def _read(path: Path) -> Iterator[Answer]:
         except (AttributeError, KeyError, RecursionError, TypeError, ValueError):
             hint = "remove that line: the rater is asked once more"
             raise StoreError("E0988", f"`{path}:{number}` is no answer of a study", hint) from None
-
-
-# --- figures ----------------------------------------------------------------------------------------
 
 
 @dataclass

@@ -103,9 +103,8 @@ def of_rendered(language: RenderedLanguage, program: str, prompt: Prompt) -> Edi
     ]
     after = language.run(program, [{name: value} for name, value in tried]) if tried else []
     before = as_written(language, program).regions
-    return Edits(
-        len(knobs), _judged(prompt, before, tried, (r.regions if r.ok else Regions() for r in after))
-    )
+    drawn = (r.regions if r.ok else Regions() for r in after)
+    return Edits(len(knobs), _judged(prompt, before, tried, drawn))
 
 
 def _judged(

@@ -64,9 +64,7 @@ class Plan:
     def language(self, variant: str) -> Language:
         """Returns a language with the help that this plan gives."""
         language = VARIANTS[variant]
-        if isinstance(language, Aidl) and not self.has_help:
-            return replace(language, mends=False, recovers=False, plans=False)
-        return language
+        return replace(language, helps=self.has_help) if isinstance(language, Aidl) else language
 
     def prompt(self, job: Job) -> Prompt:
         return next(prompt for prompt in self.prompts if prompt.name == job.prompt)

@@ -107,9 +107,6 @@ class Recorded:
         )
 
 
-# --- reading ----------------------------------------------------------------------------------------
-
-
 def load(place: Path) -> dict[Job, Recorded]:
     """Returns the conversations of a file, or of all files `*.jsonl` of a folder. Raises RecordingError."""
     found: dict[Job, Recorded] = {}
@@ -144,9 +141,6 @@ def _conversation(line: str, where: str) -> Recorded:
 
 def _refused(where: str, why: str) -> RecordingError:
     return RecordingError("E0993", f"`{where}` is no conversation: {why}", _FORM)
-
-
-# --- replaying --------------------------------------------------------------------------------------
 
 
 @dataclass(frozen=True)
@@ -209,9 +203,6 @@ def plan(recorded: Sequence[Recorded], known: Mapping[str, Prompt], settings: Se
         facts[f"{_NOTE}{one.job.key}"] = one.note or ""
         facts[f"{GUIDE}{one.job.key}"] = one.guide or ""
     return Plan(list(prompts.values()), [one.job for one in recorded], settings, True, facts)
-
-
-# --- writing ----------------------------------------------------------------------------------------
 
 
 def notes(records: Iterable[Mapping[str, Any]], settings: Mapping[str, Any]) -> tuple[str, ...]:

@@ -90,8 +90,6 @@ def _within(structure: SolvedStructure, body: Region, *, is_cut: bool) -> Iterat
 
 def _covered(outlines: Sequence[SolvedGeometry]) -> Region:
     """Returns what outlines cover when nothing else is drawn."""
-    nowhere = Frame(0.0, 0.0, 0.0)
-    alone = SolvedStructure(
-        "it", "it", "solid", "top", nowhere, {}, {}, tuple(outlines), (), None, False, None
-    )
+    here = Frame(0.0, 0.0, 0.0)
+    alone = SolvedStructure("it", "it", "solid", "top", here, {}, {}, tuple(outlines), (), None, False, None)
     return draw(SolvedModel("solved", alone))[0].regions.get("it", Region())

@@ -21,10 +21,8 @@ MEMORY, OUTPUT = 4 << 30, 32 << 20
 """Most bytes of memory that it may take, and that it may write."""
 LARGEST = 1e9
 """What a coordinate must stay below."""
-NOTHING, UNBOUNDED = (
-    "error: nothing is drawn",
-    "error: a coordinate is not a finite number, or too large",
-)
+NOTHING = "error: nothing is drawn"
+UNBOUNDED = "error: a coordinate is not a finite number, or too large"
 _SHOWN = 8
 """Most messages that the model is shown."""
 

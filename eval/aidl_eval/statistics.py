@@ -134,25 +134,16 @@ def alpha(groups: Iterable[Iterable[Sequence[float]]]) -> float | None:
     """Returns Krippendorff's alpha of ranks (Computing Krippendorff's Alpha-Reliability, University of
     Pennsylvania, 2011) over the units of all groups, each unit the ranks that raters gave it: 1 if they
     agree, 0 as by chance. What chance does is taken from each group by itself, as ranks among two and among
-    five things are not the same values. None where no two raters saw one unit, or all values are equal.
-    """
-    observed = expected = 0.0
-    for units in groups:
-        seen, chance = _disagreement([unit for unit in units if len(unit) > 1])
-        observed, expected = observed + seen, expected + chance
-    return 1 - observed / expected if expected > 0 else None
-
-
-def _disagreement(units: Sequence[Sequence[float]]) -> tuple[float, float]:
-    """Returns the disagreement within units and that expected by chance, in squares of ranks: values differ
-    by how many given ones lie between them.
+    five things are not the same values. Ranks differ by how many given ones lie between them. None where no
+    two raters saw one unit, or all values are equal.
     """
     from scipy.stats import rankdata
 
-    if not units:
-        return 0.0, 0.0
-    ranks = rankdata(np.concatenate(units))
-    own = np.split(ranks, np.cumsum([len(unit) for unit in units])[:-1])
-    return float(sum(len(unit) * np.var(unit, ddof=1) for unit in own)), float(
-        len(ranks) * np.var(ranks, ddof=1)
-    )
+    observed = expected = 0.0
+    for units in groups:
+        if shared := [unit for unit in units if len(unit) > 1]:
+            ranks = rankdata(np.concatenate(shared))
+            own = np.split(ranks, np.cumsum([len(unit) for unit in shared])[:-1])
+            observed += sum(len(unit) * np.var(unit, ddof=1) for unit in own)
+            expected += len(ranks) * np.var(ranks, ddof=1)
+    return float(1 - observed / expected) if expected > 0 else None

@@ -35,8 +35,6 @@ class Store:
     def __init__(self, folder: Path) -> None:
         self.folder = folder
 
-    # --- settings ---------------------------------------------------------------------------------
-
     def begin(self, plan: Plan, provider: str) -> None:
         """Writes the settings of a plan. Raises StoreError if the records come from others."""
         known, now = self._read(self.folder / SETTINGS) or {}, _settings(plan, provider)
@@ -57,8 +55,6 @@ class Store:
     def settings(self) -> Mapping[str, Any]:
         """Returns the settings of the records there, empty without any. Raises StoreError."""
         return self._read(self.folder / SETTINGS) or {}
-
-    # --- records ----------------------------------------------------------------------------------
 
     def record(self, job: Job) -> Record | None:
         """Returns the record of a job, if any. Raises StoreError for a file that is no record."""
@@ -83,8 +79,6 @@ class Store:
         if png is not None:
             self.write(picture_path(job.key), png)
         self.write(_record_path(job), _json(record))
-
-    # --- files ------------------------------------------------------------------------------------
 
     def write(self, name: str, data: bytes) -> None:
         """Writes a file below the folder in one step. Raises StoreError."""
@@ -123,9 +117,6 @@ def _is_record(found: Record, job: Job) -> bool:
     names = {"attempts", "ok", "program", "missing", "fixes", "usage", "request"}
     is_about = all(found.get(name) == value for name, value in asdict(job).items())
     return is_about and job.variant in VARIANTS and ("failure" in found or names <= found.keys())
-
-
-# --- from values to data --------------------------------------------------------------------------
 
 
 def measured_with(prompt: Prompt) -> str:

@@ -36,11 +36,8 @@ class Svg(RenderedLanguage):
     fences: tuple[str, ...] = ("svg", "xml")
 
     def missing(self) -> str | None:
-        return (
-            None
-            if find_spec("svgelements")
-            else "svgelements is not installed (pip install 'aidl-eval[svg]')"
-        )
+        why = "svgelements is not installed (pip install 'aidl-eval[svg]')"
+        return None if find_spec("svgelements") else why
 
     def reads(self, text: str) -> bool:
         return "<svg" in text and render(text).ok

@@ -107,10 +107,7 @@ def tabulated(lines: Sequence[Sequence[str]]) -> str:
     return "\n".join([head, "|---" * len(lines[0]) + "|", *body])
 
 
-_COLUMNS = (
-    *("prompt", "variant", "against", "figure"),
-    *("value", "count", "part", "low", "high", "variance", "p", "p_holm"),
-)
+_COLUMNS = "prompt variant against figure value count part low high variance p p_holm".split()
 
 
 def to_csv(rows: Sequence[Row], pairs: Sequence[Pair] = (), study: Study | None = None) -> str:

@@ -126,8 +126,6 @@ def _unjudged(program: str, reason: str) -> Verdict:
     return Verdict(False, _BROKEN, feedback, program, codes=(_BROKEN,), weight=(_LAST,))
 
 
-# --- in a worker -------------------------------------------------------------------------------------
-
 _State: TypeAlias = tuple[int, Language, str | None, tuple[str, ...]]
 """The number of a conversation, its language, the program that it is to change, and those judged so far."""
 

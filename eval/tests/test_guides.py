@@ -65,31 +65,24 @@ def test_no_guide_draws_what_is_asked_for(name: str) -> None:
                 assert not words <= set(re.findall(r"[a-z]+", heads)), (name, prompt.text)
 
 
-def test_a_plan_has_all_help_or_none() -> None:
-    """Each is tried for itself in the tests of conversations."""
-    slip = "solid a { c = circle(radus: 3) }"
-    said = {
-        has_help: plan.asked((), ("full",), 1, generation.Settings(), has_help)
-        .language("full")
-        .conversation()
-        .judge(slip)
-        for has_help in (True, False)
-    }
-    assert (said[True].ok, said[False].ok, said[False].fixes, said[False].program) == (True, False, (), slip)
+def test_a_plan_has_help_or_none() -> None:
+    for has_help in (True, False):
+        language = plan.asked((), ("full",), 1, generation.Settings(), has_help).language("full")
+        assert language == Aidl(helps=has_help)
 
 
 def test_help_can_be_switched_off() -> None:
     slip = "solid a { c = circle(radus: 3) }"
     helped = Aidl().conversation().judge(slip)
-    bare = Aidl(mends=False).conversation().judge(slip)
+    bare = Aidl(helps=False).conversation().judge(slip)
     assert (helped.ok, bare.ok, bare.fixes, bare.program) == (True, False, (), slip)
     plan = "assembly a { solid b { todo } solid c { d = circle(radius: 3) } }"
     assert Aidl().conversation().judge(plan).is_partial
-    taken = Aidl(plans=False).conversation().judge(plan)
+    taken = Aidl(helps=False).conversation().judge(plan)
     assert (taken.ok, taken.is_partial) == (True, False)
     first = "assembly a { solid b { c = circle(radius: 3) } solid d { e = circle(radius: 4) } }"
     last = "assembly a { solid b { c = circle(radius: 3) } }"
-    for language, restored in ((Aidl(), True), (Aidl(recovers=False), False)):
+    for language, restored in ((Aidl(), True), (Aidl(helps=False), False)):
         conversation = language.conversation()
         conversation.judge(first)
         verdict = conversation.finish(conversation.judge(last))

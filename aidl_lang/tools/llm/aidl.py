@@ -195,12 +195,10 @@ class Aidl:
     file: str = "part.aidl"
     suffix: str = ".aidl"
     fences: tuple[str, ...] = ("aidl",)
-    mends: bool = True
-    """Sure fixes are made by the machine."""
-    recovers: bool = True
-    """What a program lost of earlier ones is asked for, and put back in the end."""
-    plans: bool = True
-    """A program with empty structures is a plan, to be continued; else it is taken as it is."""
+    helps: bool = True
+    """Sure fixes are made; what a program lost is asked for, and put back in the end; one with empty parts is
+    a plan, to be continued.
+    """
     is_robust: bool = False
     """What changes kind over the ranges of its params is told once it is valid."""
 
@@ -237,7 +235,7 @@ class AidlConversation:
 
     def judge(self, program: str) -> Verdict:
         source = self._source(program)
-        mended = mend(source, self.world, self.settings) if self.language.mends else Mended(source, [])
+        mended = mend(source, self.world, self.settings) if self.language.helps else Mended(source, [])
         compiled = self._compiled(mended.source)
         self.ledger.note(mended.source, compiled)
         verdict = self._verdict(mended.source, compiled, mended.fixes)
@@ -251,7 +249,7 @@ class AidlConversation:
         source, fixes = self._source(verdict.program), verdict.fixes
         compiled = verdict.compiled or self._compiled(source)
         self.ledger.note(source, compiled)
-        if compiled.ok and self.language.recovers:
+        if compiled.ok and self.language.helps:
             text, restored = self.ledger.restore(source)
             if restored:
                 source = self._source(text)
@@ -272,7 +270,7 @@ class AidlConversation:
         warnings = [d for d in compiled.diagnostics if d.code.startswith("W")]
         stage = generation.stage_of(compiled.diagnostics)
         missing = self.ledger.missing
-        is_partial = self.language.plans and compiled.ok and _is_partial(source, compiled)
+        is_partial = self.language.helps and compiled.ok and _is_partial(source, compiled)
         distance = (int(not compiled.ok), -generation.STAGES.index(stage) if wrong else 0, int(is_partial))
         numbers: dict[str, float] = {}
         if compiled.model is not None:
@@ -323,7 +321,7 @@ class AidlConversation:
         """Returns the missing things that were not asked for too often."""
         losses = tuple(
             loss
-            for loss in (self.ledger.missing if self.language.recovers else ())
+            for loss in (self.ledger.missing if self.language.helps else ())
             if self.asked[_what(loss)] < (1 if loss.is_doubtful else _ASKED)
         )
         self.asked.update(map(_what, losses))

@@ -8,12 +8,13 @@ from base64 import b64encode
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
+from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
 from PIL import Image
 
-from aidl_eval.judgements import FEWEST, Answer, Answers, Sheet, now, sheets
+from aidl_eval.judgements import FEWEST, Answer, Answers, Sheet, sheets
 from aidl_eval.store import Store, StoreError, picture_path
 
 Groups = tuple[tuple[int, ...], ...]
@@ -30,8 +31,6 @@ class Session:
     folder: Path
     sheets: tuple[Sheet, ...]
     answers: Answers
-
-    # --- asking -----------------------------------------------------------------------------------
 
     def order(self, rater: str) -> list[Sheet]:
         """Returns all sheets as a rater meets them: every prompt once in an order of the rater's own, then
@@ -76,8 +75,6 @@ class Session:
     def _given(self, rater: str) -> dict[str, Answer]:
         return {answer.sheet: answer for answer in self.answers.all() if answer.rater == rater}
 
-    # --- answering --------------------------------------------------------------------------------
-
     def answer(self, rater: str, number: int, sheet_id: str, ranking: Groups | None) -> None:
         """Keeps an answer: places on the screen from best to worst, None if the rater could not tell. Raises
         RefusedError and StoreError.
@@ -94,7 +91,7 @@ class Session:
             raise RefusedError("There is no such page yet.")
         said = None if ranking is None else tuple(tuple(names[n] for n in group) for group in ranking)
         about = rater, sheet.prompt, sheet.run, sheet.id, tuple(names), sheet.undrawn
-        self.answers.add(Answer(*about, said, now()))
+        self.answers.add(Answer(*about, said, datetime.now(UTC).strftime("%Y-%m-%dT%H:%M:%SZ")))
 
 
 def _answered(before: Answer, names: Sequence[str]) -> dict[str, Any]:
@@ -106,9 +103,6 @@ def _answered(before: Answer, names: Sequence[str]) -> dict[str, Any]:
 def _drawn_lot(*of: object) -> bytes:
     """Returns a number drawn at random, the same whenever it is drawn for the same."""
     return hashlib.sha256("\0".join(map(str, of)).encode("utf-8", "surrogatepass")).digest()
-
-
-# --- the folder -----------------------------------------------------------------------------------
 
 
 def opened(store: Store) -> Session:
