@@ -1,4 +1,4 @@
-"""The server as clients meet it: a process of its own, asked over pipes or HTTP by the SDK's client."""
+"""The server as clients meet it: asked by the SDK's client, over HTTP, and over pipes byte by byte."""
 
 from __future__ import annotations
 
@@ -6,11 +6,13 @@ import base64
 import io
 import json
 import re
-import signal
 import subprocess
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path
+from queue import SimpleQueue
+from threading import Thread
 from typing import Any
 
 import anyio.from_thread
@@ -18,6 +20,9 @@ import jsonschema
 import pytest
 from PIL import Image
 
+from aidl_lang.tools.agents.calling import Workers
+from aidl_lang.tools.agents.tools import Tools
+from aidl_lang.tools.agents.workspace import Workspace
 from aidl_lang.tools.cli import main
 from tests.agents.test_tools import BOLT, IMPORTS, PLATE, TELEPHONE
 from tests.cli.conftest import folder as folder
@@ -26,7 +31,7 @@ from tests.commands import aidl as aidl
 from tests.documents import ROOT
 from tests.sweep.here import at_once as at_once
 
-COMMAND = [sys.executable, "-m", "aidl_lang", "mcp"]
+mcp = pytest.importorskip("mcp")
 
 
 class Session:
@@ -44,7 +49,6 @@ class Session:
 
 @contextmanager
 def connected(server: Any) -> Iterator[Session]:
-    mcp = pytest.importorskip("mcp")
     with (
         anyio.from_thread.start_blocking_portal() as portal,
         portal.wrap_async_context_manager(mcp.Client(server, read_timeout_seconds=120)) as client,
@@ -52,20 +56,23 @@ def connected(server: Any) -> Iterator[Session]:
         yield Session(client, portal)
 
 
-def command(*arguments: str) -> Any:
-    return pytest.importorskip("mcp").StdioServerParameters(
-        command=COMMAND[0], args=[*COMMAND[1:], *arguments], env={"PYTHONPATH": str(ROOT)}
-    )
-
-
 @pytest.fixture(scope="module")
-def session(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Session]:
-    """A server whose root has a bolt in it."""
+def root(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with a bolt in it."""
     root = tmp_path_factory.mktemp("server") / "lib"
     root.mkdir()
     (root / "bolt.aidl").write_text(BOLT)
-    with connected(command("--root", str(root))) as session:
+    return root
+
+
+@pytest.fixture(scope="module")
+def session(root: Path) -> Iterator[Session]:
+    from aidl_lang.tools.agents.server import Server
+
+    workers = Workers(Tools(Workspace(root)))
+    with connected(Server(workers)) as session:
         yield session
+    workers.close()
 
 
 def test_bad_program_is_checked(session: Session) -> None:
@@ -128,7 +135,7 @@ def test_texts_to_read(session: Session) -> None:
     ["aidl://diagnostics/E9999", "aidl://reference/qqqq", "aidl://examples/..%2F..%2FREADME", "aidl://x"],
 )
 def test_texts_that_there_are_not(session: Session, uri: str) -> None:
-    with pytest.raises(pytest.importorskip("mcp").MCPError):
+    with pytest.raises(mcp.MCPError):
         session("read_resource", uri)
 
 
@@ -138,32 +145,59 @@ def test_prompts(session: Session) -> None:
     assert message.content.text.startswith("Draw this with AIDL: a cup\n")
 
 
-def test_nothing_but_the_protocol_is_on_standard_output() -> None:
+def test_nothing_but_the_protocol_is_on_standard_output(root: Path) -> None:
     """Also of what the command cannot read; and it ends when its input does."""
-    lines = [b"this is no JSON", b'{"jsonrpc": "2.0", "id": 1, "method": "nothing"}', b"[]", b"\xff\xfe"]
-    done = subprocess.run(
-        COMMAND, input=b"\n".join(lines) + b"\n", capture_output=True, timeout=60, cwd=ROOT, check=True
-    )
-    assert done.stdout.strip()
-    for line in done.stdout.splitlines():
-        assert json.loads(line)["jsonrpc"] == "2.0"
+    known = {"protocolVersion": "2025-06-18", "capabilities": {}, "clientInfo": {"name": "a", "version": "1"}}
+    called = {"name": "check", "arguments": {"program": IMPORTS.replace("lib/", "")}}
+    asked: list[dict[str, Any]] = [
+        {"id": 1, "method": "nothing"},
+        {"id": 2, "method": "initialize", "params": known},
+        {"method": "notifications/initialized"},
+        {"id": 3, "method": "tools/call", "params": called},
+    ]
+    lines = [json.dumps({"jsonrpc": "2.0", **message}).encode() for message in asked]
+    command = [sys.executable, "-m", "aidl_lang", "mcp", "--root", str(root)]
+    with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, cwd=ROOT) as process:
+        assert process.stdin is not None
+        assert process.stdout is not None
+        process.stdin.write(b"\n".join([b"this is no JSON", b"[]", b"\xff\xfe", *lines, b""]))
+        process.stdin.flush()
+        told = []
+        while not told or told[-1].get("id") != 3:
+            told.append(json.loads(process.stdout.readline()))
+        assert told[-1]["result"]["structuredContent"]["ok"]
+        told += map(json.loads, process.communicate(timeout=60)[0].splitlines())
+    assert process.returncode == 0
+    assert {message["jsonrpc"] for message in told} == {"2.0"}
 
 
 @contextmanager
-def serving(*arguments: str) -> Iterator[str]:
-    """A server over HTTP at the address that it tells."""
-    with subprocess.Popen([*COMMAND, *arguments], stderr=subprocess.PIPE, text=True, cwd=ROOT) as process:
-        assert process.stderr is not None
-        try:
-            yield process.stderr.readline().split()[2]
-        finally:
-            process.send_signal(signal.SIGTERM)
-            process.wait(60)
+def serving(monkeypatch: pytest.MonkeyPatch) -> Iterator[str]:
+    """A server over HTTP at the address that the command tells, in a thread."""
+    import uvicorn
+
+    class Kept(uvicorn.Server):
+        def __init__(self, config: uvicorn.Config) -> None:
+            super().__init__(config)
+            made.put(self)
+
+    made: SimpleQueue[uvicorn.Server] = SimpleQueue()
+    said: SimpleQueue[str] = SimpleQueue()
+    monkeypatch.setattr("uvicorn.Server", Kept)
+    monkeypatch.setattr("aidl_lang.tools.cli.serving.say", said.put)
+    thread = Thread(target=main, args=(["mcp", "--http", "0"],))
+    thread.start()
+    server = made.get(timeout=60)
+    try:
+        yield said.get(timeout=60).split()[2]
+    finally:
+        server.should_exit = True
+        thread.join(60)
 
 
 def test_over_http_with_a_token_of_ones_own(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("AIDL_MCP_TOKEN", "our-own-token-for-this")
-    with serving("--http", "0") as address:
+    with serving(monkeypatch) as address:
         assert re.fullmatch(r"http://127\.0\.0\.1:\d+/our-own-token-for-this/mcp", address)
         with connected(address) as session:
             assert session.ask("check", program=PLATE).structured_content["ok"]
