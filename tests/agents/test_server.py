@@ -176,14 +176,10 @@ def serving(monkeypatch: pytest.MonkeyPatch) -> Iterator[str]:
     """A server over HTTP at the address that the command tells, in a thread."""
     import uvicorn
 
-    class Kept(uvicorn.Server):
-        def __init__(self, config: uvicorn.Config) -> None:
-            super().__init__(config)
-            made.put(self)
-
     made: SimpleQueue[uvicorn.Server] = SimpleQueue()
     said: SimpleQueue[str] = SimpleQueue()
-    monkeypatch.setattr("uvicorn.Server", Kept)
+    run = uvicorn.Server.run
+    monkeypatch.setattr(uvicorn.Server, "run", lambda self, **given: (made.put(self), run(self, **given)))
     monkeypatch.setattr("aidl_lang.tools.cli.serving.say", said.put)
     thread = Thread(target=main, args=(["mcp", "--http", "0"],))
     thread.start()

@@ -14,6 +14,9 @@ CHROMIUM = next(filter(None, map(shutil.which, BROWSERS)), None)
 ARGUMENTS = [
     "--no-sandbox",
     "--disable-gpu",
+    "--disable-gpu-compositing",
+    "--in-process-gpu",
+    "--no-zygote",
     "--disable-background-networking",
     "--disable-component-update",
     "--disable-sync",

@@ -180,7 +180,12 @@ def still(shared: Pane, request: pytest.FixtureRequest) -> Iterator[Pane]:
         page.set_viewport_size(VIEWPORT)
     if host.is_asked("aidl/try"):  # whose answer is too late
         host.answer("aidl/try", picture(tried=True))
-    page.evaluate("() => document.activeElement.blur()")
+    page.evaluate(
+        """() => {
+            document.activeElement.blur();
+            document.querySelector("#handles-toggle[aria-pressed=true]")?.click();
+        }"""
+    )
     page.keyboard.press("Escape")
     shared.shows()
     page.keyboard.press("f")

@@ -256,55 +256,55 @@ def grab(pane: Pane, x: float, y: float) -> None:
     pull(pane, pane.at(x, y))
 
 
-def test_a_dragged_point_tells_millimetres(pane: Pane) -> None:
-    grab(pane, 20, 5)
-    pane.move(22.2, 7.3, steps=2)
-    pane.move(30.4, -4.8, steps=2)
-    expect(pane.find("#tooltip")).to_contain_text("30.0, −5.0 mm" if pane.scale < 8 else "30.5, −5.0 mm")
-    pane.page.mouse.up()
-    pane.host.wait(lambda: any(final for _, final in tried(pane)))
-    assert [final for _, final in tried(pane)] == [False, True]
-    assert pane.scale < 8
-    assert tried(pane)[-1] == ([30, -5], True)
-    assert pane.host.of("aidl/drag")[-1]["id"] == "h0"
-    assert pane.host.of("aidl/goto") == []
-    assert pane.middle(".handle .knot") == pytest.approx(pane.at(30, -5), abs=0.6)
+def test_a_dragged_point_tells_millimetres(still: Pane) -> None:
+    grab(still, 20, 5)
+    still.move(22.2, 7.3, steps=2)
+    still.move(30.4, -4.8, steps=2)
+    expect(still.find("#tooltip")).to_contain_text("30.0, −5.0 mm" if still.scale < 8 else "30.5, −5.0 mm")
+    still.page.mouse.up()
+    still.host.wait(lambda: any(final for _, final in tried(still)))
+    assert [final for _, final in tried(still)] == [False, True]
+    assert still.scale < 8
+    assert tried(still)[-1] == ([30, -5], True)
+    assert still.host.of("aidl/drag")[-1]["id"] == "h0"
+    assert still.host.of("aidl/goto") == []
+    assert still.middle(".handle .knot") == pytest.approx(still.at(30, -5), abs=0.6)
 
 
-def test_a_point_is_dragged_at_once_after_another_was_chosen(pane: Pane) -> None:
-    pane.shows(handles=[handle(), handle(id="h1", at=[-20, 5])])
-    grab(pane, 20, 5)
-    pane.page.mouse.up()
-    pull(pane, pane.at(-20, 5), pane.at(-25, 8), steps=3)
-    pane.page.mouse.up()
-    pane.host.wait(lambda: any(final for _, final in tried(pane)))
-    assert tried(pane)[-1] == ([-25, 8], True)
-    assert pane.host.of("aidl/drag")[-1]["id"] == "h1"
+def test_a_point_is_dragged_at_once_after_another_was_chosen(still: Pane) -> None:
+    still.shows(handles=[handle(), handle(id="h1", at=[-20, 5])])
+    grab(still, 20, 5)
+    still.page.mouse.up()
+    pull(still, still.at(-20, 5), still.at(-25, 8), steps=3)
+    still.page.mouse.up()
+    still.host.wait(lambda: any(final for _, final in tried(still)))
+    assert tried(still)[-1] == ([-25, 8], True)
+    assert still.host.of("aidl/drag")[-1]["id"] == "h1"
 
 
-def test_params_that_a_drag_changes_are_shown(pane: Pane) -> None:
-    x, y = pane.middle(".handle")
-    pane.page.get_by_role("button", name="Points").click()
-    pull(pane, (x, y), (x + 40, y), steps=3)
-    pane.host.hears("aidl/try")
-    pane.shows(tried=True, knobs=[knob(value=117)])
-    expect(field(pane)).to_have_value("117")
-    pane.page.keyboard.press("Escape")
-    expect(field(pane)).to_have_value("100")
-    pane.page.mouse.up()
+def test_params_that_a_drag_changes_are_shown(still: Pane) -> None:
+    x, y = still.middle(".handle")
+    still.page.get_by_role("button", name="Points").click()
+    pull(still, (x, y), (x + 40, y), steps=3)
+    still.host.hears("aidl/try")
+    still.shows(tried=True, knobs=[knob(value=117)])
+    expect(field(still)).to_have_value("117")
+    still.page.keyboard.press("Escape")
+    expect(field(still)).to_have_value("100")
+    still.page.mouse.up()
 
 
-def test_escape_while_dragging_forgets_it(pane: Pane) -> None:
-    grab(pane, 20, 5)
-    pane.move(30, 5, steps=2)
-    pane.host.hears("aidl/try")
-    pane.page.keyboard.press("Escape")
-    pane.host.answer("aidl/try", picture(tried=True, degrees=77))
-    pane.move(35, 5)
-    pane.page.mouse.up()
-    expect(pane.find(".handle.dragged")).to_have_count(0)
-    expect(pane.find("#status-freedom")).to_have_text("2 degrees of freedom")
-    assert all(not final for _, final in tried(pane))
+def test_escape_while_dragging_forgets_it(still: Pane) -> None:
+    grab(still, 20, 5)
+    still.move(30, 5, steps=2)
+    still.host.hears("aidl/try")
+    still.page.keyboard.press("Escape")
+    still.host.answer("aidl/try", picture(tried=True, degrees=77))
+    still.move(35, 5)
+    still.page.mouse.up()
+    expect(still.find(".handle.dragged")).to_have_count(0)
+    expect(still.find("#status-freedom")).to_have_text("2 degrees of freedom")
+    assert all(not final for _, final in tried(still))
 
 
 def test_a_point_moves_by_keys(pane: Pane) -> None:
