@@ -107,13 +107,6 @@ def test_call_that_cannot_be_answered_is_an_error_of_the_tool(session: Session) 
         assert made.structured_content is None
 
 
-def test_ten_megabytes_are_refused(session: Session) -> None:
-    made = session.ask("check", program="// " + "x" * 10_000_000)
-    assert made.is_error
-    assert "have 10,000,003 characters, more than the 400,000 allowed" in made.content[0].text
-    assert not session.ask("check", program=PLATE).is_error
-
-
 def test_imports_cannot_leave_the_root(session: Session) -> None:
     inside = session.ask("check", program=IMPORTS.replace("lib/", ""))
     outside = session.ask("check", program=IMPORTS.replace("lib/", "../lib/"))
@@ -146,34 +139,37 @@ def test_prompts(session: Session) -> None:
 
 
 def test_nothing_but_the_protocol_is_on_standard_output(root: Path) -> None:
-    """Also of what the command cannot read; and it ends when its input does."""
+    """Also of what the command cannot read, or is too long; and it ends when its input does."""
     known = {"protocolVersion": "2025-06-18", "capabilities": {}, "clientInfo": {"name": "a", "version": "1"}}
-    called = {"name": "check", "arguments": {"program": IMPORTS.replace("lib/", "")}}
-    asked: list[dict[str, Any]] = [
+    messages: list[dict[str, Any]] = [
         {"id": 1, "method": "nothing"},
         {"id": 2, "method": "initialize", "params": known},
         {"method": "notifications/initialized"},
-        {"id": 3, "method": "tools/call", "params": called},
     ]
-    lines = [json.dumps({"jsonrpc": "2.0", **message}).encode() for message in asked]
+    for number, program in enumerate(("// " + "x" * 10_000_000, IMPORTS.replace("lib/", "")), 3):
+        call = {"name": "check", "arguments": {"program": program}}
+        messages.append({"id": number, "method": "tools/call", "params": call})
+    lines = [json.dumps({"jsonrpc": "2.0", **message}).encode() for message in messages]
     command = [sys.executable, "-m", "aidl_lang", "mcp", "--root", str(root)]
     with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, cwd=ROOT) as process:
         assert process.stdin is not None
         assert process.stdout is not None
         process.stdin.write(b"\n".join([b"this is no JSON", b"[]", b"\xff\xfe", *lines, b""]))
         process.stdin.flush()
-        told = []
-        while not told or told[-1].get("id") != 3:
-            told.append(json.loads(process.stdout.readline()))
-        assert told[-1]["result"]["structuredContent"]["ok"]
-        told += map(json.loads, process.communicate(timeout=60)[0].splitlines())
-    assert process.returncode == 0
-    assert {message["jsonrpc"] for message in told} == {"2.0"}
+        told: dict[object, dict[str, Any]] = {}
+        while not {3, 4} <= told.keys():
+            message = json.loads(process.stdout.readline())
+            assert message["jsonrpc"] == "2.0"
+            told[message.get("id")] = message
+        rest, _ = process.communicate(timeout=60)
+    assert (process.returncode, rest) == (0, b"")
+    refused, made = told[3]["result"], told[4]["result"]
+    assert refused["isError"]
+    assert "have 10,000,003 characters, more than the 400,000 allowed" in refused["content"][0]["text"]
+    assert made["structuredContent"]["ok"]
 
 
-@contextmanager
-def serving(monkeypatch: pytest.MonkeyPatch) -> Iterator[str]:
-    """A server over HTTP at the address that the command tells, in a thread."""
+def test_over_http_with_a_token_of_ones_own(monkeypatch: pytest.MonkeyPatch) -> None:
     import uvicorn
 
     made: SimpleQueue[uvicorn.Server] = SimpleQueue()
@@ -181,19 +177,11 @@ def serving(monkeypatch: pytest.MonkeyPatch) -> Iterator[str]:
     run = uvicorn.Server.run
     monkeypatch.setattr(uvicorn.Server, "run", lambda self, **given: (made.put(self), run(self, **given)))
     monkeypatch.setattr("aidl_lang.tools.cli.serving.say", said.put)
+    monkeypatch.setenv("AIDL_MCP_TOKEN", "our-own-token-for-this")
     thread = Thread(target=main, args=(["mcp", "--http", "0"],))
     thread.start()
-    server = made.get(timeout=60)
+    server, address = made.get(timeout=60), said.get().split()[2]
     try:
-        yield said.get(timeout=60).split()[2]
-    finally:
-        server.should_exit = True
-        thread.join(60)
-
-
-def test_over_http_with_a_token_of_ones_own(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("AIDL_MCP_TOKEN", "our-own-token-for-this")
-    with serving(monkeypatch) as address:
         assert re.fullmatch(r"http://127\.0\.0\.1:\d+/our-own-token-for-this/mcp", address)
         with connected(address) as session:
             assert session.ask("check", program=PLATE).structured_content["ok"]
@@ -201,6 +189,9 @@ def test_over_http_with_a_token_of_ones_own(monkeypatch: pytest.MonkeyPatch) -> 
         assert _status(address, {"Origin": "http://example.com"}) == 403
         host = address.rpartition("/mcp")[0].rpartition("/")[0]
         assert [_status(f"{host}{path}", {}) for path in ("/mcp", "/x/mcp", "/")] == [404, 404, 404]
+    finally:
+        server.should_exit = True
+        thread.join(60)
 
 
 def test_without_one_the_address_is_a_secret(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -12,7 +12,7 @@ from server.tests.preview.conftest import browsing
 from server.tests.preview.pane.messages import SVG, picture, words
 from server.tests.preview.pane.scripted import ScriptedHost
 
-VIEWPORT: ViewportSize = {"width": 1200, "height": 800}
+VIEWPORT: ViewportSize = {"width": 1000, "height": 600}
 
 browser = pytest.fixture(scope="package")(browsing)
 

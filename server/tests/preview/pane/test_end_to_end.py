@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Browser, Locator, Page, expect
 
-from server.tests.preview.pane.conftest import at
+from server.tests.preview.pane.conftest import VIEWPORT, at
 from tests.documents import ROOT
 
 PLATE = """\
@@ -81,7 +81,7 @@ def served(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Path, str
 
 @pytest.fixture(scope="module")
 def shared(browser: Browser, served: tuple[Path, str]) -> Iterator[Preview]:
-    page = browser.new_page(viewport={"width": 1400, "height": 900})
+    page = browser.new_page(viewport=VIEWPORT)
     page.set_default_timeout(PATIENCE * 1000)
     expect.set_options(timeout=PATIENCE * 1000)
     complaints: list[str] = []

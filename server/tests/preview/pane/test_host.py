@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import json
 
+import pytest
 from playwright.sync_api import expect
 
 from server.tests.preview.pane.conftest import Pane
@@ -165,43 +166,46 @@ def test_themes(pane: Pane) -> None:
     assert lightness() > 0.5
 
 
-def test_everything_fits_into_narrow_windows(still: Pane) -> None:
+def boxes(pane: Pane, *parts: str) -> list[dict[str, float]]:
+    """Where parts are once the first of them is scrolled into sight."""
+    script = """parts => {
+        document.querySelector(parts[0]).scrollIntoView({ block: "nearest", inline: "nearest" });
+        return parts.map(part => document.querySelector(part).getBoundingClientRect().toJSON());
+    }"""
+    found: list[dict[str, float]] = pane.page.evaluate(script, parts)
+    return found
+
+
+@pytest.fixture
+def full(still: Pane) -> Pane:
+    """The pane with a text beside the drawing, and a long problem."""
     still.writes()
     still.shows(problems=[problem(message="a `long` " * 30)])
+    return still
+
+
+def test_everything_fits_into_narrow_windows(full: Pane) -> None:
     for width in (320, 480, 720, 1400):
-        still.page.set_viewport_size({"width": width, "height": 800})
-        size = still.page.evaluate(
+        full.page.set_viewport_size({"width": width, "height": 800})
+        size = full.page.evaluate(
             "() => [document.documentElement.scrollWidth, document.documentElement.scrollHeight]"
         )
         assert size == [width, 800]
         for part in ("#stage", "#problems", "#knobs", ".statusbar"):
-            ((left, right, _, _, height),) = boxes(still, part, part)
-            assert left >= 0
-            assert right <= width + 0.5
-            assert height > (150 if part == "#stage" else 20)
+            (box,) = boxes(full, part)
+            assert box["left"] >= 0
+            assert box["right"] <= width + 0.5
+            assert box["height"] > (150 if part == "#stage" else 20)
 
 
-def boxes(pane: Pane, sight: str, *parts: str) -> list[list[float]]:
-    """Left, right, top, bottom and height of parts while one is scrolled into sight."""
-    script = """([sight, parts]) => {
-        document.querySelector(sight).scrollIntoView({ block: "nearest", inline: "nearest" });
-        return parts.map(part => document.querySelector(part).getBoundingClientRect())
-            .map(box => [box.left, box.right, box.top, box.bottom, box.height]);
-    }"""
-    found: list[list[float]] = pane.page.evaluate(script, [sight, parts])
-    return found
-
-
-def test_the_drawing_is_in_sight_beside_text_problems_and_sliders(still: Pane) -> None:
-    still.writes()
-    still.shows(problems=[problem(message="a `long` " * 30)])
+def test_the_drawing_is_in_sight_beside_text_problems_and_sliders(full: Pane) -> None:
     for height in (480, 640, 800):
-        still.page.set_viewport_size({"width": 420, "height": height})
+        full.page.set_viewport_size({"width": 420, "height": height})
         for part in ("#source", "#knobs"):
-            (left, right, top, bottom, _), (_, _, bar, _, _) = boxes(still, part, ".drawing", ".statusbar")
-            assert right - left > 150
-            assert top >= 0
-            assert bottom <= bar
+            _, drawing, bar = boxes(full, part, ".drawing", ".statusbar")
+            assert drawing["width"] > 150
+            assert drawing["top"] >= 0
+            assert drawing["bottom"] <= bar["top"]
 
 
 # Without a mouse
