@@ -57,18 +57,8 @@ def test_a_value_is_written_and_nothing_else(path: str, value: float | str | boo
 @pytest.mark.parametrize(
     ("path", "value"),
     [
-        ("width", 99.0),
-        ("width", math.inf),
-        ("width", math.nan),
-        ("width", 1e30),
-        ("width", True),
-        ("width", "wide"),
-        ("bolt", "m6"),
-        ("bolt", 4),
-        ("marked", "yes"),
-        ("label", 3),
-        ("half", 50),
-        ("no such", 1),
+        *(("width", value) for value in (99.0, math.inf, math.nan, 1e30, True, "wide")),
+        *(("bolt", "m6"), ("bolt", 4), ("marked", "yes"), ("label", 3), ("half", 50), ("no such", 1)),
     ],
 )
 def test_what_does_not_fit_is_refused(path: str, value: float | str | bool) -> None:

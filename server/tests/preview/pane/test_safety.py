@@ -14,7 +14,7 @@ from aidl_lang.common.source import SourceFile
 from aidl_lang.export.job import Options
 from aidl_lang.pipeline import compile
 from server.tests.preview.pane.conftest import Pane
-from server.tests.preview.pane.messages import SVG, URI, handle, knob, place, problem
+from server.tests.preview.pane.messages import SVG, URI, element, handle, knob, place, problem
 from server.tests.preview.pane.scripted import ScriptedHost
 from tests.compiled import FEW
 
@@ -153,17 +153,7 @@ def test_hostile_texts_are_shown_as_text(pane: Pane) -> None:
     seen = evil.replace("`", "")
     pane.shows(
         uri=f"file:///a/{evil}",
-        elements=[
-            {
-                "path": f"part.{evil}",
-                "kind": "structure",
-                "type": evil,
-                "range": None,
-                "uri": None,
-                "hint": evil,
-            }
-            for _ in range(5)
-        ],
+        elements=[element(f"part.{evil}", "structure", evil, None, evil)] * 5,
         knobs=[
             knob(path=f"{evil}.{evil}", name=evil, doc=evil),
             knob(path="c", name="c", kind="choice", value=evil, choices=[evil], doc=""),
