@@ -1,4 +1,4 @@
-"""The server as clients meet it: a process of its own, asked over pipes or HTTP by the SDK's client."""
+"""The server as clients meet it: asked by the SDK's client, over HTTP, and over pipes byte by byte."""
 
 from __future__ import annotations
 
@@ -6,11 +6,13 @@ import base64
 import io
 import json
 import re
-import signal
 import subprocess
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path
+from queue import SimpleQueue
+from threading import Thread
 from typing import Any
 
 import anyio.from_thread
@@ -18,6 +20,9 @@ import jsonschema
 import pytest
 from PIL import Image
 
+from aidl_lang.tools.agents.calling import Workers
+from aidl_lang.tools.agents.tools import Tools
+from aidl_lang.tools.agents.workspace import Workspace
 from aidl_lang.tools.cli import main
 from tests.agents.test_tools import BOLT, IMPORTS, PLATE, TELEPHONE
 from tests.cli.conftest import folder as folder
@@ -26,7 +31,7 @@ from tests.commands import aidl as aidl
 from tests.documents import ROOT
 from tests.sweep.here import at_once as at_once
 
-COMMAND = [sys.executable, "-m", "aidl_lang", "mcp"]
+mcp = pytest.importorskip("mcp")
 
 
 class Session:
@@ -44,7 +49,6 @@ class Session:
 
 @contextmanager
 def connected(server: Any) -> Iterator[Session]:
-    mcp = pytest.importorskip("mcp")
     with (
         anyio.from_thread.start_blocking_portal() as portal,
         portal.wrap_async_context_manager(mcp.Client(server, read_timeout_seconds=120)) as client,
@@ -52,20 +56,23 @@ def connected(server: Any) -> Iterator[Session]:
         yield Session(client, portal)
 
 
-def command(*arguments: str) -> Any:
-    return pytest.importorskip("mcp").StdioServerParameters(
-        command=COMMAND[0], args=[*COMMAND[1:], *arguments], env={"PYTHONPATH": str(ROOT)}
-    )
-
-
 @pytest.fixture(scope="module")
-def session(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Session]:
-    """A server whose root has a bolt in it."""
+def root(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with a bolt in it."""
     root = tmp_path_factory.mktemp("server") / "lib"
     root.mkdir()
     (root / "bolt.aidl").write_text(BOLT)
-    with connected(command("--root", str(root))) as session:
+    return root
+
+
+@pytest.fixture(scope="module")
+def session(root: Path) -> Iterator[Session]:
+    from aidl_lang.tools.agents.server import Server
+
+    workers = Workers(Tools(Workspace(root)))
+    with connected(Server(workers)) as session:
         yield session
+    workers.close()
 
 
 def test_bad_program_is_checked(session: Session) -> None:
@@ -100,13 +107,6 @@ def test_call_that_cannot_be_answered_is_an_error_of_the_tool(session: Session) 
         assert made.structured_content is None
 
 
-def test_ten_megabytes_are_refused(session: Session) -> None:
-    made = session.ask("check", program="// " + "x" * 10_000_000)
-    assert made.is_error
-    assert "have 10,000,003 characters, more than the 400,000 allowed" in made.content[0].text
-    assert not session.ask("check", program=PLATE).is_error
-
-
 def test_imports_cannot_leave_the_root(session: Session) -> None:
     inside = session.ask("check", program=IMPORTS.replace("lib/", ""))
     outside = session.ask("check", program=IMPORTS.replace("lib/", "../lib/"))
@@ -128,7 +128,7 @@ def test_texts_to_read(session: Session) -> None:
     ["aidl://diagnostics/E9999", "aidl://reference/qqqq", "aidl://examples/..%2F..%2FREADME", "aidl://x"],
 )
 def test_texts_that_there_are_not(session: Session, uri: str) -> None:
-    with pytest.raises(pytest.importorskip("mcp").MCPError):
+    with pytest.raises(mcp.MCPError):
         session("read_resource", uri)
 
 
@@ -138,32 +138,50 @@ def test_prompts(session: Session) -> None:
     assert message.content.text.startswith("Draw this with AIDL: a cup\n")
 
 
-def test_nothing_but_the_protocol_is_on_standard_output() -> None:
-    """Also of what the command cannot read; and it ends when its input does."""
-    lines = [b"this is no JSON", b'{"jsonrpc": "2.0", "id": 1, "method": "nothing"}', b"[]", b"\xff\xfe"]
-    done = subprocess.run(
-        COMMAND, input=b"\n".join(lines) + b"\n", capture_output=True, timeout=60, cwd=ROOT, check=True
-    )
-    assert done.stdout.strip()
-    for line in done.stdout.splitlines():
-        assert json.loads(line)["jsonrpc"] == "2.0"
-
-
-@contextmanager
-def serving(*arguments: str) -> Iterator[str]:
-    """A server over HTTP at the address that it tells."""
-    with subprocess.Popen([*COMMAND, *arguments], stderr=subprocess.PIPE, text=True, cwd=ROOT) as process:
-        assert process.stderr is not None
-        try:
-            yield process.stderr.readline().split()[2]
-        finally:
-            process.send_signal(signal.SIGTERM)
-            process.wait(60)
+def test_nothing_but_the_protocol_is_on_standard_output(root: Path) -> None:
+    """Also of what the command cannot read, or is too long; and it ends when its input does."""
+    known = {"protocolVersion": "2025-06-18", "capabilities": {}, "clientInfo": {"name": "a", "version": "1"}}
+    messages: list[dict[str, Any]] = [
+        {"id": 1, "method": "nothing"},
+        {"id": 2, "method": "initialize", "params": known},
+        {"method": "notifications/initialized"},
+    ]
+    for number, program in enumerate(("// " + "x" * 10_000_000, IMPORTS.replace("lib/", "")), 3):
+        call = {"name": "check", "arguments": {"program": program}}
+        messages.append({"id": number, "method": "tools/call", "params": call})
+    lines = [json.dumps({"jsonrpc": "2.0", **message}).encode() for message in messages]
+    command = [sys.executable, "-m", "aidl_lang", "mcp", "--root", str(root)]
+    with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, cwd=ROOT) as process:
+        assert process.stdin is not None
+        assert process.stdout is not None
+        process.stdin.write(b"\n".join([b"this is no JSON", b"[]", b"\xff\xfe", *lines, b""]))
+        process.stdin.flush()
+        told: dict[object, dict[str, Any]] = {}
+        while not {3, 4} <= told.keys():
+            message = json.loads(process.stdout.readline())
+            assert message["jsonrpc"] == "2.0"
+            told[message.get("id")] = message
+        rest, _ = process.communicate(timeout=60)
+    assert (process.returncode, rest) == (0, b"")
+    refused, made = told[3]["result"], told[4]["result"]
+    assert refused["isError"]
+    assert "have 10,000,003 characters, more than the 400,000 allowed" in refused["content"][0]["text"]
+    assert made["structuredContent"]["ok"]
 
 
 def test_over_http_with_a_token_of_ones_own(monkeypatch: pytest.MonkeyPatch) -> None:
+    import uvicorn
+
+    made: SimpleQueue[uvicorn.Server] = SimpleQueue()
+    said: SimpleQueue[str] = SimpleQueue()
+    run = uvicorn.Server.run
+    monkeypatch.setattr(uvicorn.Server, "run", lambda self, **given: (made.put(self), run(self, **given)))
+    monkeypatch.setattr("aidl_lang.tools.cli.serving.say", said.put)
     monkeypatch.setenv("AIDL_MCP_TOKEN", "our-own-token-for-this")
-    with serving("--http", "0") as address:
+    thread = Thread(target=main, args=(["mcp", "--http", "0"],))
+    thread.start()
+    server, address = made.get(timeout=60), said.get().split()[2]
+    try:
         assert re.fullmatch(r"http://127\.0\.0\.1:\d+/our-own-token-for-this/mcp", address)
         with connected(address) as session:
             assert session.ask("check", program=PLATE).structured_content["ok"]
@@ -171,6 +189,9 @@ def test_over_http_with_a_token_of_ones_own(monkeypatch: pytest.MonkeyPatch) -> 
         assert _status(address, {"Origin": "http://example.com"}) == 403
         host = address.rpartition("/mcp")[0].rpartition("/")[0]
         assert [_status(f"{host}{path}", {}) for path in ("/mcp", "/x/mcp", "/")] == [404, 404, 404]
+    finally:
+        server.should_exit = True
+        thread.join(60)
 
 
 def test_without_one_the_address_is_a_secret(monkeypatch: pytest.MonkeyPatch) -> None:

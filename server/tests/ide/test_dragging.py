@@ -219,7 +219,7 @@ def test_in_examples_points_come_to_lie_where_they_were_shown(name: str) -> None
     path = next(p for p in EXAMPLES if p.stem == name)
     view = solved_at(path)
     put = 0
-    for each in handles(view)[: 8 if TRIES_ALL else 5]:
+    for each in handles(view)[: 8 if TRIES_ALL else 3]:
         try:
             found = drag(view, each.id, (each.at[0] + 3, each.at[1] + 2))
             assert found.edits
@@ -232,4 +232,4 @@ def test_in_examples_points_come_to_lie_where_they_were_shown(name: str) -> None
         assert besides_numbers(again.source.text) == besides_numbers(view.source.text)
         assert again.outcome.model is not None
         assert all(report.satisfied for report in again.outcome.model.constraints if not report.soft)
-    assert put >= (5 if TRIES_ALL else 3)
+    assert put >= (5 if TRIES_ALL else 2)

@@ -12,7 +12,7 @@ from aidl_server.ide.completion import complete
 from aidl_server.ide.hover import hover
 from aidl_server.ide.signatures import signature_help
 from aidl_server.ide.workspace import View, Workspace, look, run
-from server.tests.ide.conftest import seen
+from server.tests.ide.conftest import seen, solved_at
 from tests.amount import TRIES_ALL
 from tests.compiled import FEW
 from tests.fuzz.sources import mutant
@@ -39,18 +39,16 @@ def test_every_place_is_answered(path: Path) -> None:
     workspace = Workspace([path.parent])
     world = workspace.world(path)
 
-    def texts() -> Iterator[tuple[str, int]]:
-        yield text, 12
-        for _ in range(5 if TRIES_ALL else 2):
-            yield mutant(chance, [text]), 3
-        yield "\ufeff" + text.replace("\n", "\r\n"), 3
+    def views() -> Iterator[View]:
+        yield solved_at(path)
+        for number in range(5 if TRIES_ALL else 1):
+            view = look(path, mutant(chance, [text]), world)
+            yield run(view) if number == 1 else view
+        yield look(path, "\ufeff" + text.replace("\n", "\r\n"), world)
 
-    for number, (changed, places) in enumerate(texts()):
-        view = look(path, changed, world)
-        if number in (0, 2):
-            view = run(view)
-        for _ in range(places):
-            _ask(view, chance.randrange(-1, len(changed) + 2), workspace.programs)
+    for number, view in enumerate(views()):
+        for _ in range(3 if number else 12 if TRIES_ALL else 6):
+            _ask(view, chance.randrange(-1, len(view.source.text) + 2), workspace.programs)
 
 
 @pytest.mark.parametrize(

@@ -94,7 +94,7 @@ SHAPED_BY_WHAT_IS_WRITTEN = {
 
 def _moved() -> list[Block]:
     found = (b for page in PAGES for b in programs(Path(ROOT, "tests/spec", f"{page}.md")))
-    return some([b for b in found if not b.note and "constrain" in b.text], 3)
+    return some([b for b in found if not b.note and "constrain" in b.text], 6)
 
 
 def test_the_corpus_draws_the_same_with_all_solved_numbers_written_down() -> None:
@@ -110,7 +110,7 @@ def test_the_corpus_draws_the_same_with_all_solved_numbers_written_down() -> Non
         left = [g for g in guesses(again) if not g.is_shared and g.is_off(g.solved)]
         if not near(curves(view), curves(again)) or left:
             wrong.add(block.heading)
-    assert tried > (30 if TRIES_ALL else 10)
+    assert tried > (30 if TRIES_ALL else 5)
     assert wrong <= SHAPED_BY_WHAT_IS_WRITTEN
 
 

@@ -169,9 +169,7 @@ CAPABILITIES = converter().structure(
             "codeLens": {"refreshSupport": True},
         },
         "textDocument": {
-            "completion": {
-                "completionItem": {"snippetSupport": True, "documentationFormat": ["markdown"]},
-            },
+            "completion": {"completionItem": {"snippetSupport": True, "documentationFormat": ["markdown"]}},
             "hover": {"contentFormat": ["markdown"]},
             "documentSymbol": {"hierarchicalDocumentSymbolSupport": True},
             "rename": {"prepareSupport": True},

@@ -13,6 +13,7 @@ from pygls.exceptions import JsonRpcException
 from aidl_lang import pipeline
 from aidl_lang.common.source import SourceFile
 from server.tests.lsp.editor import TELEPHONE, Editor, edited
+from tests.compiled import compiled
 
 pytestmark = pytest.mark.asyncio(loop_scope="session")
 
@@ -40,7 +41,7 @@ def said(diagnostics) -> list[tuple[str, str]]:
 
 
 def wanted(text: str) -> list[tuple[str, str]]:
-    return [(d.code, d.message) for d in pipeline.compile(SourceFile(TELEPHONE.name, text)).diagnostics]
+    return [(d.code, d.message) for d in compiled(text).diagnostics]
 
 
 @pytest.mark.parametrize("seed", range(2))

@@ -11,10 +11,9 @@ import pytest
 from lsprotocol import types
 from pygls.exceptions import JsonRpcException
 
-from aidl_lang import pipeline
 from aidl_lang.common import resources
-from aidl_lang.common.source import SourceFile
 from server.tests.lsp.editor import TELEPHONE, Editor, edited, offset, place, stretch
+from tests.compiled import compiled
 
 pytestmark = pytest.mark.asyncio(loop_scope="session")
 WHOLE = types.Range(types.Position(0, 0), types.Position(9999, 0))
@@ -39,13 +38,13 @@ async def telephone(editor: Editor) -> str:
 
 async def test_an_example_has_the_diagnostics_that_the_command_gives(editor: Editor) -> None:
     uri = editor.open(TELEPHONE)
-    compiled = pipeline.compile(SourceFile(TELEPHONE.name, editor.texts[uri]))
+    known = compiled(editor.texts[uri])
     found = await editor.found(uri)
     assert [(d.code, d.message.partition("\n")[0]) for d in found] == [
-        (d.code, d.message) for d in compiled.diagnostics
+        (d.code, d.message) for d in known.diagnostics
     ]
     status = await editor.status(uri)
-    assert (status["status"], status["degrees"]) == ("solved", compiled.model.degrees)
+    assert (status["status"], status["degrees"]) == ("solved", known.model.degrees)
     editor.close(uri)
 
 
@@ -405,11 +404,11 @@ async def test_preview_says_where_everything_is_written(editor: Editor) -> None:
 
 async def test_exports_are_those_of_the_command(editor: Editor) -> None:
     uri = await telephone(editor)
-    compiled = pipeline.compile(SourceFile("telephone.aidl", editor.texts[uri]))
+    known = compiled(editor.texts[uri])
     for form in ("svg", "dxf"):
         made = await editor.ask("aidl/export", uri=uri, format=form)
         assert made["name"] == f"telephone.{form}"
-        assert base64.b64decode(made["data"]) == compiled.export(f".{form}")
+        assert base64.b64decode(made["data"]) == known.export(f".{form}")
     with pytest.raises(JsonRpcException, match="no format"):
         await editor.ask("aidl/export", uri=uri, format="gif")
 

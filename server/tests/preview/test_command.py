@@ -44,15 +44,8 @@ def test_a_port_that_is_taken_is_told(file: str, host: str, capsys: pytest.Captu
 @pytest.mark.parametrize(
     "options",
     [
-        ("--host", "0.0.0.0"),
-        ("--host", "192.168.0.1"),
-        ("--host", "::"),
-        ("--host", "example.com"),
-        ("--host", ""),
-        ("--port", "65536"),
-        ("--port", "-1"),
-        ("--port", "٣"),
-        ("--port", "http"),
+        *(("--host", host) for host in ("0.0.0.0", "192.168.0.1", "::", "example.com", "")),
+        *(("--port", port) for port in ("65536", "-1", "٣", "http")),
     ],
 )
 def test_only_this_machine_and_real_ports(

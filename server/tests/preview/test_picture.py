@@ -20,7 +20,7 @@ from tests.compiled import LIGHTER
 SVG = "{http://www.w3.org/2000/svg}"
 
 
-@pytest.fixture(scope="module", params=some(LIGHTER))
+@pytest.fixture(scope="module", params=some(LIGHTER, 8))
 def example(request: pytest.FixtureRequest) -> View:
     return solved_at(request.param)
 

@@ -74,26 +74,14 @@ def test_the_page_and_all_that_it_asks_for(still: Site) -> None:
             get(f"pane/{imported}")
 
 
-@pytest.mark.parametrize(
-    "path",
-    [
-        "/",
-        "/favicon.ico",
-        "/wrong/",
-        "/tok-En_12/",
-        f"/{TOKEN}x/",
-        f"/{TOKEN}",
-        f"/{TOKEN}/pane/../site.py",
-        f"/{TOKEN}/pane/..%2fsite.py",
-        f"/{TOKEN}/pane/%2e%2e/site.py",
-        f"/{TOKEN}/pane/..%5csite.py",
-        f"/{TOKEN}/pane//etc/passwd",
-        f"/{TOKEN}/pane/%2fetc%2fpasswd",
-        f"/{TOKEN}/pane/protocol.d.ts",
-        f"/{TOKEN}/pane/",
-        f"/{TOKEN}/pane/main.js%00.css",
-    ],
-)
+NOTHING = f"""
+    / /favicon.ico /wrong/ /tok-En_12/ /{TOKEN}x/ /{TOKEN} /{TOKEN}/pane/../site.py /{TOKEN}/pane/..%2fsite.py
+    /{TOKEN}/pane/%2e%2e/site.py /{TOKEN}/pane/..%5csite.py /{TOKEN}/pane//etc/passwd
+    /{TOKEN}/pane/%2fetc%2fpasswd /{TOKEN}/pane/protocol.d.ts /{TOKEN}/pane/ /{TOKEN}/pane/main.js%00.css
+"""
+
+
+@pytest.mark.parametrize("path", NOTHING.split())
 def test_there_is_nothing_else(still: Site, path: str) -> None:
     assert still.client.get(path, follow_redirects=False).status_code in (307, 404)
     assert still.client.get(path).status_code in (404, 200 if path == f"/{TOKEN}" else 404)
@@ -108,16 +96,10 @@ def test_another_name_is_refused(still: Site, name: str) -> None:
         pass
 
 
-@pytest.mark.parametrize(
-    "origin",
-    [
-        "http://evil.example",
-        "null",
-        f"https://{ADDRESS}",
-        "http://127.0.0.1:9",
-        f"http://{ADDRESS}.evil.example",
-    ],
-)
+FOREIGN = "http://evil.example", "null", "http://127.0.0.1:9"
+
+
+@pytest.mark.parametrize("origin", [*FOREIGN, f"https://{ADDRESS}", f"http://{ADDRESS}.evil.example"])
 def test_pages_from_elsewhere_are_refused(still: Site, origin: str) -> None:
     with pytest.raises(WebSocketDisconnect), still.talking(origin=origin):
         pass
@@ -201,18 +183,10 @@ def test_dragging_nowhere_is_refused(still: Site) -> None:
 
 
 def test_noise_is_passed_over(still: Site) -> None:
-    noise = [
-        "",
-        "null",
-        "7",
-        "{",
-        "[]",
-        "\0",
-        '{"id":1}',
-        '{"method":"aidl/try"}',
-        '{"id":true,"method":"x"}',
-    ]
-    noise += ['{"id":"1","method":"aidl/preview"}', "[" * 60_000, '{"a":' * 10_000]
+    noise = (
+        *("", "null", "7", "{", "[]", "\0", '{"id":1}', '{"method":"aidl/try"}', '{"id":true,"method":"x"}'),
+        *('{"id":"1","method":"aidl/preview"}', "[" * 60_000, '{"a":' * 10_000),
+    )
     with still.talking() as page:
         for text in noise:
             page.socket.send_text(text)

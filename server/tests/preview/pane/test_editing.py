@@ -167,96 +167,84 @@ def test_points_appear_when_their_element_is_pointed_at(still: Pane) -> None:
 # Sliders
 
 
-def test_a_slider_asks_for_one_thing_at_a_time_and_next_for_the_newest(pane: Pane) -> None:
-    pull(pane, *(along(pane, value) for value in (100, 110, 120, 130, 140)), steps=3)
-    (first, final), *others = tried(pane)
+def test_a_slider_asks_for_one_thing_at_a_time_and_next_for_the_newest(still: Pane) -> None:
+    pull(still, *(along(still, value) for value in (100, 110, 120, 130, 140)), steps=3)
+    (first, final), *others = tried(still)
     assert not others
     assert not final
     assert 100 < first < 112
-    expect(field(pane)).to_have_value("140")
+    expect(field(still)).to_have_value("140")
 
-    pane.shows(tried=True, knobs=[knob(value=first)], box=[-60, -30, 60, 30])
-    expect(field(pane)).to_have_value("140")
-    expect(pane.find("#status")).to_contain_text("tried")
-    expect(pane.find("#status-size")).to_have_text("120 × 60 mm")
-    pane.host.hears("aidl/try", 2)
-    assert tried(pane)[1] == (140, False)
-    pane.page.mouse.move(*along(pane, 150))
-    assert len(tried(pane)) == 2
+    still.shows(tried=True, knobs=[knob(value=first)], box=[-60, -30, 60, 30])
+    expect(field(still)).to_have_value("140")
+    expect(still.find("#status")).to_contain_text("tried")
+    expect(still.find("#status-size")).to_have_text("120 × 60 mm")
+    still.host.hears("aidl/try", 2)
+    assert tried(still)[1] == (140, False)
+    still.page.mouse.move(*along(still, 150))
+    assert len(tried(still)) == 2
 
-    pane.page.mouse.up()
-    pane.host.hears("aidl/setKnob")
-    assert tried(pane)[2:] == [(150, True)]
-    pane.shows(knobs=[knob(value=150)])
-    expect(field(pane)).to_have_value("150")
-    expect(pane.find("#status")).to_have_text("Solved")
-
-
-def test_a_late_answer_to_what_was_tried_is_not_shown(pane: Pane) -> None:
-    pull(pane, along(pane, 100), along(pane, 120))
-    pane.page.mouse.up()
-    pane.host.wait(lambda: (120, True) in tried(pane))
-    pane.host.answer("aidl/try", picture(tried=True, degrees=77))
-    pane.shows(knobs=[knob(value=120)])
-    expect(pane.find("#status-freedom")).to_have_text("2 degrees of freedom")
+    still.page.mouse.up()
+    still.host.hears("aidl/setKnob")
+    assert tried(still)[2:] == [(150, True)]
+    still.shows(knobs=[knob(value=150)])
+    expect(field(still)).to_have_value("150")
+    expect(still.find("#status")).to_have_text("Solved")
 
 
-def test_a_slider_ends_at_the_bounds(pane: Pane) -> None:
+def test_a_late_answer_to_what_was_tried_is_not_shown(still: Pane) -> None:
+    pull(still, along(still, 100), along(still, 120))
+    still.page.mouse.up()
+    still.host.wait(lambda: (120, True) in tried(still))
+    still.host.answer("aidl/try", picture(tried=True, degrees=77))
+    still.shows(knobs=[knob(value=120)])
+    expect(still.find("#status-freedom")).to_have_text("2 degrees of freedom")
+
+
+def test_a_slider_ends_at_the_bounds(still: Pane) -> None:
     for start, past, bound in ((100, 400, 200), (200, -100, 60)):
-        pull(pane, along(pane, start), along(pane, past))
-        pane.page.mouse.up()
-        pane.host.wait(lambda bound=bound: (bound, True) in tried(pane))
-        pane.shows(knobs=[knob(value=bound)])
-    assert all(60 <= value <= 200 for value, _ in tried(pane))
+        pull(still, along(still, start), along(still, past))
+        still.page.mouse.up()
+        still.host.wait(lambda bound=bound: (bound, True) in tried(still))
+        still.shows(knobs=[knob(value=bound)])
+    assert all(60 <= value <= 200 for value, _ in tried(still))
 
 
-def test_a_slider_by_keys_writes_when_the_key_is_let_go(pane: Pane) -> None:
-    slider(pane).focus()
-    pane.page.keyboard.down("ArrowRight")
-    pane.page.keyboard.down("ArrowRight")
-    pane.host.hears("aidl/try")
-    assert not any(final for _, final in tried(pane))
-    pane.page.keyboard.up("ArrowRight")
-    pane.host.wait(lambda: (101, True) in tried(pane))  # two steps of half a millimetre
-    pane.shows(knobs=[knob(value=101)])
-    pane.page.keyboard.press("End")
-    pane.host.wait(lambda: (200, True) in tried(pane))
+def test_a_slider_by_keys_writes_when_the_key_is_let_go(still: Pane) -> None:
+    slider(still).focus()
+    still.page.keyboard.down("ArrowRight")
+    still.page.keyboard.down("ArrowRight")
+    still.host.hears("aidl/try")
+    assert not any(final for _, final in tried(still))
+    still.page.keyboard.up("ArrowRight")
+    still.host.wait(lambda: (101, True) in tried(still))  # two steps of half a millimetre
+    still.shows(knobs=[knob(value=101)])
+    still.page.keyboard.press("End")
+    still.host.wait(lambda: (200, True) in tried(still))
 
 
-def test_params_that_a_drag_changes_are_shown(pane: Pane) -> None:
-    x, y = pane.middle(".handle")
-    pane.page.get_by_role("button", name="Points").click()
-    pull(pane, (x, y), (x + 40, y), steps=3)
-    pane.host.hears("aidl/try")
-    pane.shows(tried=True, knobs=[knob(value=117)])
-    expect(field(pane)).to_have_value("117")
-    pane.page.keyboard.press("Escape")
-    expect(field(pane)).to_have_value("100")
-    pane.page.mouse.up()
-
-
-def test_what_is_wrong_is_looked_into_when_the_slider_rests(pane: Pane) -> None:
-    pull(pane, along(pane, 100), along(pane, 150))
-    assert "rests" not in pane.host.hears("aidl/try")
-    pane.shows(tried=True, status="partial")
-    assert pane.host.hears("aidl/try", 2)["rests"] is True
-    pane.page.mouse.up()
+def test_what_is_wrong_is_looked_into_when_the_slider_rests(still: Pane) -> None:
+    pull(still, along(still, 100), along(still, 150))
+    assert "rests" not in still.host.hears("aidl/try")
+    still.shows(tried=True, status="partial")
+    assert still.host.hears("aidl/try", 2)["rests"] is True
+    still.page.mouse.up()
 
 
 @pytest.mark.parametrize("changes", [{"editable": False}, {"range": None, "uri": None}])
-def test_what_is_not_in_the_text_can_only_be_tried(pane: Pane, changes: dict[str, Any]) -> None:
-    pane.shows(knobs=[knob(**changes), knob(path="depth", name="depth")])
-    reset = pane.page.get_by_role("button", name="Reset width")
+def test_what_is_not_in_the_text_can_only_be_tried(still: Pane, changes: dict[str, Any]) -> None:
+    still.shows(knobs=[knob(**changes), knob(path="depth", name="depth")])
+    reset = still.page.get_by_role("button", name="Reset width")
     expect(reset).to_be_hidden()
-    pull(pane, along(pane, 100), along(pane, 150))
-    pane.page.mouse.up()
-    pane.host.hears("aidl/try")
-    pane.shows(tried=True, knobs=[knob(value=150, **changes), knob(path="depth", name="depth")], degrees=9)
+    pull(still, along(still, 100), along(still, 150))
+    still.page.mouse.up()
+    still.host.hears("aidl/try")
+    still.shows(tried=True, knobs=[knob(value=150, **changes), knob(path="depth", name="depth")], degrees=9)
     expect(reset).to_be_visible()
-    assert tried(pane) == [(150, False)]
+    assert tried(still) == [(150, False)]
     reset.click()
-    expect(field(pane)).to_have_value("100")
-    expect(pane.find("#status-freedom")).to_have_text("2 degrees of freedom")
+    expect(field(still)).to_have_value("100")
+    expect(still.find("#status-freedom")).to_have_text("2 degrees of freedom")
 
 
 # Points
@@ -268,43 +256,55 @@ def grab(pane: Pane, x: float, y: float) -> None:
     pull(pane, pane.at(x, y))
 
 
-def test_a_dragged_point_tells_millimetres(pane: Pane) -> None:
-    grab(pane, 20, 5)
-    pane.move(22.2, 7.3, steps=2)
-    pane.move(30.4, -4.8, steps=2)
-    expect(pane.find("#tooltip")).to_contain_text("30.0, −5.0 mm" if pane.scale < 8 else "30.5, −5.0 mm")
-    pane.page.mouse.up()
-    pane.host.wait(lambda: any(final for _, final in tried(pane)))
-    assert [final for _, final in tried(pane)] == [False, True]
-    assert pane.scale < 8
-    assert tried(pane)[-1] == ([30, -5], True)
-    assert pane.host.of("aidl/drag")[-1]["id"] == "h0"
-    assert pane.host.of("aidl/goto") == []
-    assert pane.middle(".handle .knot") == pytest.approx(pane.at(30, -5), abs=0.6)
+def test_a_dragged_point_tells_millimetres(still: Pane) -> None:
+    grab(still, 20, 5)
+    still.move(22.2, 7.3, steps=2)
+    still.move(30.4, -4.8, steps=2)
+    expect(still.find("#tooltip")).to_contain_text("30.0, −5.0 mm" if still.scale < 8 else "30.5, −5.0 mm")
+    still.page.mouse.up()
+    still.host.wait(lambda: any(final for _, final in tried(still)))
+    assert [final for _, final in tried(still)] == [False, True]
+    assert still.scale < 8
+    assert tried(still)[-1] == ([30, -5], True)
+    assert still.host.of("aidl/drag")[-1]["id"] == "h0"
+    assert still.host.of("aidl/goto") == []
+    assert still.middle(".handle .knot") == pytest.approx(still.at(30, -5), abs=0.6)
 
 
-def test_a_point_is_dragged_at_once_after_another_was_chosen(pane: Pane) -> None:
-    pane.shows(handles=[handle(), handle(id="h1", at=[-20, 5])])
-    grab(pane, 20, 5)
-    pane.page.mouse.up()
-    pull(pane, pane.at(-20, 5), pane.at(-25, 8), steps=3)
-    pane.page.mouse.up()
-    pane.host.wait(lambda: any(final for _, final in tried(pane)))
-    assert tried(pane)[-1] == ([-25, 8], True)
-    assert pane.host.of("aidl/drag")[-1]["id"] == "h1"
+def test_a_point_is_dragged_at_once_after_another_was_chosen(still: Pane) -> None:
+    still.shows(handles=[handle(), handle(id="h1", at=[-20, 5])])
+    grab(still, 20, 5)
+    still.page.mouse.up()
+    pull(still, still.at(-20, 5), still.at(-25, 8), steps=3)
+    still.page.mouse.up()
+    still.host.wait(lambda: any(final for _, final in tried(still)))
+    assert tried(still)[-1] == ([-25, 8], True)
+    assert still.host.of("aidl/drag")[-1]["id"] == "h1"
 
 
-def test_escape_while_dragging_forgets_it(pane: Pane) -> None:
-    grab(pane, 20, 5)
-    pane.move(30, 5, steps=2)
-    pane.host.hears("aidl/try")
-    pane.page.keyboard.press("Escape")
-    pane.host.answer("aidl/try", picture(tried=True, degrees=77))
-    pane.move(35, 5)
-    pane.page.mouse.up()
-    expect(pane.find(".handle.dragged")).to_have_count(0)
-    expect(pane.find("#status-freedom")).to_have_text("2 degrees of freedom")
-    assert all(not final for _, final in tried(pane))
+def test_params_that_a_drag_changes_are_shown(still: Pane) -> None:
+    x, y = still.middle(".handle")
+    still.page.get_by_role("button", name="Points").click()
+    pull(still, (x, y), (x + 40, y), steps=3)
+    still.host.hears("aidl/try")
+    still.shows(tried=True, knobs=[knob(value=117)])
+    expect(field(still)).to_have_value("117")
+    still.page.keyboard.press("Escape")
+    expect(field(still)).to_have_value("100")
+    still.page.mouse.up()
+
+
+def test_escape_while_dragging_forgets_it(still: Pane) -> None:
+    grab(still, 20, 5)
+    still.move(30, 5, steps=2)
+    still.host.hears("aidl/try")
+    still.page.keyboard.press("Escape")
+    still.host.answer("aidl/try", picture(tried=True, degrees=77))
+    still.move(35, 5)
+    still.page.mouse.up()
+    expect(still.find(".handle.dragged")).to_have_count(0)
+    expect(still.find("#status-freedom")).to_have_text("2 degrees of freedom")
+    assert all(not final for _, final in tried(still))
 
 
 def test_a_point_moves_by_keys(pane: Pane) -> None:

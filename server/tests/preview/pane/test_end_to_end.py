@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Browser, Locator, Page, expect
 
-from server.tests.preview.pane.conftest import at
+from server.tests.preview.pane.conftest import VIEWPORT, at
 from tests.documents import ROOT
 
 PLATE = """\
@@ -81,28 +81,25 @@ def served(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Path, str
 
 @pytest.fixture(scope="module")
 def shared(browser: Browser, served: tuple[Path, str]) -> Iterator[Preview]:
-    page = browser.new_page(viewport={"width": 1400, "height": 900})
+    page = browser.new_page(viewport=VIEWPORT)
     page.set_default_timeout(PATIENCE * 1000)
     expect.set_options(timeout=PATIENCE * 1000)
     complaints: list[str] = []
     page.on("pageerror", lambda error: complaints.append(str(error)))
     page.on("console", lambda m: complaints.append(m.text) if m.type in ("error", "warning") else None)
-    page.on("dialog", lambda dialog: dialog.accept())  # what is typed is left unsaved
+    page.goto(served[1])
     yield Preview(page, served[0], complaints)
     page.close()
 
 
 @pytest.fixture
-def preview(shared: Preview, served: tuple[Path, str]) -> Iterator[Preview]:
-    """The page of the plate, loaded anew."""
+def preview(shared: Preview) -> Iterator[Preview]:
+    """The page, with the plate in it again."""
     shared.file.write_text(PLATE, "utf-8")
-    shared.page.mouse.up()
     shared.page.mouse.move(0, 0)
-    shared.page.goto(served[1])
     expect(shared.find("#source-lines")).to_contain_text("param width = 160mm")
     shared.until_width(160)
     yield shared
-    shared.page.goto("about:blank")
     assert shared.complaints == []
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import json
 
+import pytest
 from playwright.sync_api import expect
 
 from server.tests.preview.pane.conftest import Pane
@@ -165,46 +166,55 @@ def test_themes(pane: Pane) -> None:
     assert lightness() > 0.5
 
 
-def test_everything_fits_into_narrow_windows(pane: Pane) -> None:
-    pane.writes()
-    pane.shows(problems=[problem(message="a `long` " * 30)])
+def boxes(pane: Pane, *parts: str) -> list[dict[str, float]]:
+    """Where parts are once the first of them is scrolled into sight."""
+    script = """parts => {
+        document.querySelector(parts[0]).scrollIntoView({ block: "nearest", inline: "nearest" });
+        return parts.map(part => document.querySelector(part).getBoundingClientRect().toJSON());
+    }"""
+    found: list[dict[str, float]] = pane.page.evaluate(script, parts)
+    return found
+
+
+@pytest.fixture
+def full(still: Pane) -> Pane:
+    """The pane with a text beside the drawing, and a long problem."""
+    still.writes()
+    still.shows(problems=[problem(message="a `long` " * 30)])
+    return still
+
+
+def test_everything_fits_into_narrow_windows(full: Pane) -> None:
     for width in (320, 480, 720, 1400):
-        pane.page.set_viewport_size({"width": width, "height": 800})
-        size = pane.page.evaluate(
+        full.page.set_viewport_size({"width": width, "height": 800})
+        size = full.page.evaluate(
             "() => [document.documentElement.scrollWidth, document.documentElement.scrollHeight]"
         )
         assert size == [width, 800]
         for part in ("#stage", "#problems", "#knobs", ".statusbar"):
-            pane.find(part).scroll_into_view_if_needed()
-            box = pane.find(part).bounding_box()
-            assert box is not None
-            assert box["x"] >= 0
-            assert box["x"] + box["width"] <= width + 0.5
+            (box,) = boxes(full, part)
+            assert box["left"] >= 0
+            assert box["right"] <= width + 0.5
             assert box["height"] > (150 if part == "#stage" else 20)
 
 
-def test_the_drawing_is_in_sight_beside_text_problems_and_sliders(pane: Pane) -> None:
-    pane.writes()
-    pane.shows(problems=[problem(message="a `long` " * 30)])
+def test_the_drawing_is_in_sight_beside_text_problems_and_sliders(full: Pane) -> None:
     for height in (480, 640, 800):
-        pane.page.set_viewport_size({"width": 420, "height": height})
+        full.page.set_viewport_size({"width": 420, "height": height})
         for part in ("#source", "#knobs"):
-            pane.find(part).scroll_into_view_if_needed()
-            drawing, bar = (pane.find(one).bounding_box() for one in (".drawing", ".statusbar"))
-            assert drawing is not None
-            assert bar is not None
+            _, drawing, bar = boxes(full, part, ".drawing", ".statusbar")
             assert drawing["width"] > 150
-            assert drawing["y"] >= 0
-            assert drawing["y"] + drawing["height"] <= bar["y"]
+            assert drawing["top"] >= 0
+            assert drawing["bottom"] <= bar["top"]
 
 
 # Without a mouse
 
 
-def test_every_control_has_a_name(pane: Pane) -> None:
-    pane.writes()
-    pane.shows(problems=[problem(fixes=1)])
-    unnamed = pane.page.eval_on_selector_all(
+def test_every_control_has_a_name(still: Pane) -> None:
+    still.writes()
+    still.shows(problems=[problem(fixes=1)])
+    unnamed = still.page.eval_on_selector_all(
         "button, input, select, [tabindex]",
         """all => all.filter(one => !one.getAttribute("aria-label") && !one.textContent.trim())
             .filter(one => !one.labels?.length).map(one => one.outerHTML)""",
@@ -212,27 +222,28 @@ def test_every_control_has_a_name(pane: Pane) -> None:
     assert unnamed == []
 
 
-def test_menus_work_by_keys(pane: Pane) -> None:
-    pane.page.get_by_role("button", name="Export").focus()
-    pane.page.keyboard.press("Enter")
-    pane.host.answer("aidl/exports", EXPORTS)
-    expect(pane.find("#export-format")).to_be_focused()
-    pane.page.keyboard.press("ArrowDown")
-    pane.page.keyboard.press("Tab")
-    pane.page.keyboard.type("a3")
-    pane.page.keyboard.press("Enter")
-    assert pane.host.hears("aidl/export")["format"] == "dxf"
-    pane.host.answer("aidl/export", {"name": "plate.dxf", "data": "", "notes": []})
-    expect(pane.find("#export-menu")).to_be_hidden()
-    pane.page.get_by_role("button", name="Export").click()
-    pane.page.keyboard.press("Escape")
-    expect(pane.find("#export-menu")).to_be_hidden()
-    expect(pane.page.get_by_role("button", name="Export")).to_be_focused()
+def test_menus_work_by_keys(still: Pane) -> None:
+    still.page.get_by_role("button", name="Export").focus()
+    still.page.keyboard.press("Enter")
+    still.host.answer("aidl/exports", EXPORTS)
+    expect(still.find("#export-format")).to_be_focused()
+    still.page.keyboard.press("ArrowDown")
+    still.page.keyboard.press("Tab")
+    still.page.keyboard.type("a3")
+    still.page.keyboard.press("Enter")
+    assert still.host.hears("aidl/export")["format"] == "dxf"
+    still.host.answer("aidl/export", {"name": "plate.dxf", "data": "", "notes": []})
+    expect(still.find("#export-menu")).to_be_hidden()
+    still.page.get_by_role("button", name="Export").click()
+    still.page.keyboard.press("Escape")
+    expect(still.find("#export-menu")).to_be_hidden()
+    expect(still.page.get_by_role("button", name="Export")).to_be_focused()
 
 
-def test_keys_in_a_field_are_typed(pane: Pane) -> None:
-    before = pane.scale, json.dumps(pane.at(0, 0))
-    field = pane.page.get_by_role("textbox", name="width")
+def test_keys_in_a_field_are_typed(still: Pane) -> None:
+    before = still.scale, json.dumps(still.at(0, 0))
+    field = still.page.get_by_role("textbox", name="width")
     field.focus()
-    pane.page.keyboard.type("+f0-")
-    assert (pane.scale, json.dumps(pane.at(0, 0))) == before
+    still.page.keyboard.type("+f0-")
+    assert (still.scale, json.dumps(still.at(0, 0))) == before
+    field.press("Escape")

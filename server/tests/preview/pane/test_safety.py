@@ -14,7 +14,7 @@ from aidl_lang.common.source import SourceFile
 from aidl_lang.export.job import Options
 from aidl_lang.pipeline import compile
 from server.tests.preview.pane.conftest import Pane
-from server.tests.preview.pane.messages import SVG, URI, handle, knob, place, problem
+from server.tests.preview.pane.messages import SVG, URI, element, handle, knob, place, problem
 from server.tests.preview.pane.scripted import ScriptedHost
 from tests.compiled import FEW
 
@@ -80,15 +80,15 @@ def test_a_hostile_drawing_does_nothing(open_pane) -> None:
         assert "/harm" in host.requests
 
 
-def test_what_is_no_drawing_is_said(pane: Pane) -> None:
+def test_what_is_no_drawing_is_said(still: Pane) -> None:
     for text in ("", "no XML", "<svg>", f"<html xmlns='{HTML}'/>", "<svg/>"):
-        pane.shows(svg=text)
-        expect(pane.find(".toast")).to_contain_text("not an SVG document")
-        expect(pane.find("#empty")).to_be_visible()
-        pane.find(".toast button").click()
-        pane.shows()
-        expect(pane.find("#empty")).to_be_hidden()
-    pane.complaints.clear()  # Chromium styles its own report of broken XML, and the policy stops that
+        still.shows(svg=text)
+        expect(still.find(".toast")).to_contain_text("not an SVG document")
+        expect(still.find("#empty")).to_be_visible()
+        still.find(".toast button").click()
+        still.shows()
+        expect(still.find("#empty")).to_be_hidden()
+    still.complaints.clear()  # Chromium styles its own report of broken XML, and the policy stops that
 
 
 def test_names_in_a_drawing_are_not_those_of_the_page(still: Pane) -> None:
@@ -117,22 +117,43 @@ def test_gradients_of_the_drawing_are_shown_and_none_from_elsewhere(still: Pane)
     assert still.find(".drawing [fill^=url]").count() == 1
 
 
+@pytest.mark.parametrize("example", FEW)
+def test_nothing_of_a_drawing_is_lost(still: Pane, example: Path) -> None:
+    compiled = compile(SourceFile(example.name, example.read_text("utf-8")))
+    layers = frozenset({"names", "points", "bbox", "constraints", "dof", "plan"})
+    svg = compiled.export(".svg", Options(layers)).decode()
+    still.shows(svg=svg, uri=f"{URI}/{example.name}")
+    for shape in ("path", "circle", "rect", "clipPath"):
+        expect(still.find(f".drawing {shape}")).to_have_count(len(re.findall(rf"<{shape}\b", svg)))
+    words = re.findall(r"<text[^>]*>([^<]*)</text>", svg)
+    assert len(words) == still.find(".drawing text").count() > 0
+    fills = {fill.replace("url(#", "url(#drawing-") for fill in re.findall(r'fill="([^"]*)"', svg)}
+    assert fills == set(
+        still.page.eval_on_selector_all(".drawing [fill]", "all => all.map(one => one.getAttribute('fill'))")
+    )
+
+
+def test_every_colour_of_css_is_drawn(still: Pane) -> None:
+    names = sorted(COLOR_NAMES)
+    assert len(names) == 148
+    text = "".join(
+        f'@detached @color("{name}") solid s{k} {{ c = circle(center: fixed(({3 * k}, 0)), radius: 1) }}\n'
+        for k, name in enumerate(names)
+    )
+    still.shows(svg=compile(SourceFile("colours", text)).export(".svg").decode())
+    fills = still.page.eval_on_selector_all(
+        ".drawing path, .drawing circle",
+        "all => all.map(one => getComputedStyle(one).fill).filter(fill => fill !== 'none')",
+    )
+    assert fills == [f"rgb({', '.join(map(str, getrgb(name)))})" for name in names]
+
+
 def test_hostile_texts_are_shown_as_text(pane: Pane) -> None:
     evil = '<img src=/harm onerror="window.harmed=true"><script>window.harmed=true</script>`<b>`&amp;'
     seen = evil.replace("`", "")
     pane.shows(
         uri=f"file:///a/{evil}",
-        elements=[
-            {
-                "path": f"part.{evil}",
-                "kind": "structure",
-                "type": evil,
-                "range": None,
-                "uri": None,
-                "hint": evil,
-            }
-            for _ in range(5)
-        ],
+        elements=[element(f"part.{evil}", "structure", evil, None, evil)] * 5,
         knobs=[
             knob(path=f"{evil}.{evil}", name=evil, doc=evil),
             knob(path="c", name="c", kind="choice", value=evil, choices=[evil], doc=""),
@@ -167,34 +188,3 @@ def test_hostile_texts_are_shown_as_text(pane: Pane) -> None:
     assert pane.page.evaluate("() => window.harmed") is None
     assert pane.find("img:not(.cm-widgetBuffer), b, script:not([src])").count() == 0
     assert "/harm" not in pane.host.requests
-
-
-@pytest.mark.parametrize("example", FEW)
-def test_nothing_of_a_drawing_is_lost(still: Pane, example: Path) -> None:
-    compiled = compile(SourceFile(example.name, example.read_text("utf-8")))
-    layers = frozenset({"names", "points", "bbox", "constraints", "dof", "plan"})
-    svg = compiled.export(".svg", Options(layers)).decode()
-    still.shows(svg=svg, uri=f"{URI}/{example.name}")
-    for shape in ("path", "circle", "rect", "clipPath"):
-        expect(still.find(f".drawing {shape}")).to_have_count(len(re.findall(rf"<{shape}\b", svg)))
-    words = re.findall(r"<text[^>]*>([^<]*)</text>", svg)
-    assert len(words) == still.find(".drawing text").count() > 0
-    fills = {fill.replace("url(#", "url(#drawing-") for fill in re.findall(r'fill="([^"]*)"', svg)}
-    assert fills == set(
-        still.page.eval_on_selector_all(".drawing [fill]", "all => all.map(one => one.getAttribute('fill'))")
-    )
-
-
-def test_every_colour_of_css_is_drawn(still: Pane) -> None:
-    names = sorted(COLOR_NAMES)
-    assert len(names) == 148
-    text = "".join(
-        f'@detached @color("{name}") solid s{k} {{ c = circle(center: fixed(({3 * k}, 0)), radius: 1) }}\n'
-        for k, name in enumerate(names)
-    )
-    still.shows(svg=compile(SourceFile("colours", text)).export(".svg").decode())
-    fills = still.page.eval_on_selector_all(
-        ".drawing path, .drawing circle",
-        "all => all.map(one => getComputedStyle(one).fill).filter(fill => fill !== 'none')",
-    )
-    assert fills == [f"rgb({', '.join(map(str, getrgb(name)))})" for name in names]
