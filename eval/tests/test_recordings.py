@@ -12,6 +12,8 @@ from aidl_eval.openscad import OpenScad
 from aidl_eval.recordings import RecordingError, load
 from aidl_eval.summary import Share
 from aidl_eval.table import shown
+from aidl_lang.common.source import SourceFile
+from aidl_lang.pipeline import compile
 from aidl_lang.tools.llm.aidl import Aidl
 from aidl_lang.tools.llm.messages import find_program
 from eval.tests.conftest import Evaluation
@@ -167,8 +169,8 @@ def test_the_recording_of_version_0_1() -> None:
     conversation = language.conversation()
     (replies,) = (c.replies for c in kept if (c.prompt, c.variant) == ("game_controller", "full"))
     programs = [find_program(reply.text, language.fences, language.reads)[0] for reply in replies[:3]]
-    codes = [conversation.judge(program).codes for program in programs if program]
-    assert codes == [("E0518",), ("E0518",), ()]
+    assert [conversation.judge(program or "").codes for program in programs[:2]] == [("E0518",)] * 2
+    assert compile(SourceFile("game_controller.aidl", programs[2] or "")).ok
     page = (ROOT / "eval" / "README.md").read_text("utf-8")
     assert f"| valid at first | {shown(Share(8, 9))} | {shown(Share(9, 9))} |" in page
 
