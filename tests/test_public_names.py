@@ -50,12 +50,13 @@ def _undocumented() -> Iterator[str]:
 
 def _stale() -> Iterator[str]:
     """What one command makes."""
-    made = {**site.texts(ROOT), **colours.texts(ROOT)}
+    written = site.texts(ROOT)
+    made = {**written, **colours.texts(ROOT)}
     stale = [path for path, text in made.items() if _read(path) != text]
     pictures = {f"docs/reference/{image(entry)}" for entry in ENTRIES if entry.doc.example}
     pictures |= set(gallery.image_paths(ROOT))
     stale += [path for path in pictures if not (ROOT / path).is_file()]
-    stale += site.strays(ROOT, pictures | site.texts(ROOT).keys())
+    stale += site.strays(ROOT, pictures | written.keys())
     page = _read(site.COVERAGE)
     if coverage.headings(page) != coverage.constraints() or coverage.header() not in page:
         stale.append(site.COVERAGE)

@@ -11,12 +11,12 @@ import time
 import pytest
 from PIL import Image
 
+from eval.tests import scripted
 from eval.tests.conftest import Evaluation
-from tests.documents import ROOT
 
-TELEPHONE = (ROOT / "examples" / "telephone.aidl").read_text(encoding="utf-8")
+BIRDHOUSE = scripted.good("birdhouse")
 WRONG = (
-    "assembly telephone {\n    solid base { body = rectangle(center: origin, width: wdth, height: 50) }\n}\n"
+    "assembly birdhouse {\n    solid base { body = rectangle(center: origin, width: wdth, height: 50) }\n}\n"
 )
 NASTY = '</script></pre><img src=x onerror="alert(1)">\u202e'
 FLAT = """\
@@ -33,27 +33,27 @@ def fenced(program: str, name: str = "aidl") -> str:
 
 
 def test_runs_are_measured(evaluation: Evaluation) -> None:
-    evaluation.say("telephone", "full", 1, fenced(WRONG), fenced(TELEPHONE))
-    evaluation.say("telephone", "full", 2, f"No. {NASTY}")
-    evaluation.say("telephone", "no-hierarchy", 1, fenced(FLAT))
-    evaluation.say("telephone", "no-hierarchy", 2, fenced(FLAT))
+    evaluation.say("birdhouse", "full", 1, fenced(WRONG), fenced(BIRDHOUSE))
+    evaluation.say("birdhouse", "full", 2, f"No. {NASTY}")
+    evaluation.say("birdhouse", "no-hierarchy", 1, fenced(FLAT))
+    evaluation.say("birdhouse", "no-hierarchy", 2, fenced(FLAT))
     done = evaluation(
-        "--prompts", "telephone", "--variants", "full", "no-hierarchy", "--runs", "2", "--attempts", "2"
+        "--prompts", "birdhouse", "--variants", "full", "no-hierarchy", "--runs", "2", "--attempts", "2"
     )
     assert done.code == 0
-    assert "4/4 telephone, " in done.err
+    assert "4/4 birdhouse, " in done.err
 
-    record = evaluation.record("telephone", "full", 1)
+    record = evaluation.record("birdhouse", "full", 1)
     assert [a["verdict"]["ok"] for a in record["attempts"]] == [False, True]
     assert record["attempts"][0]["verdict"]["codes"] == ["E0201"]
     assert "wdth" in record["attempts"][0]["answer"]
-    assert "telephone" in record["request"]
+    assert "birdhouse" in record["request"]
     assert all(r["is_met"] for r in record["requirements"])
     assert len(record["requirements"]) >= 3
     assert {edit["knob"] for edit in record["edits"]["edits"]} == {"width"}
-    with Image.open(evaluation.out / "pictures" / "telephone" / "full" / "1.png") as picture:
+    with Image.open(evaluation.out / "pictures" / "birdhouse" / "full" / "1.png") as picture:
         assert max(picture.size) == 512
-    assert evaluation.record("telephone", "full", 2)["program"] is None
+    assert evaluation.record("birdhouse", "full", 2)["program"] is None
 
     full, flat = evaluation.figures("full"), evaluation.figures("no-hierarchy")
     assert [full[n]["value"] for n in ("valid at first", "valid", "attempts")] == [0, 0.5, 2]
@@ -68,7 +68,7 @@ def test_runs_are_measured(evaluation: Evaluation) -> None:
     assert "&lt;/script&gt;&lt;/pre&gt;&lt;img src=x" in page
     assert "\u202e" not in page
     assert page.count("<script>") == page.count("</script>") == 1
-    assert 'src="pictures/telephone/full/1.png"' in page
+    assert 'src="pictures/birdhouse/full/1.png"' in page
     assert page.count("<article ") == 4
 
 

@@ -8,12 +8,15 @@ from pathlib import Path
 
 import pytest
 
-from aidl_eval import measures
 from aidl_eval.openscad import OpenScad
 from aidl_eval.recordings import RecordingError, load
 from aidl_eval.summary import Share
 from aidl_eval.table import shown
-from eval.tests.conftest import Evaluation, unedited
+from aidl_lang.common.source import SourceFile
+from aidl_lang.pipeline import compile
+from aidl_lang.tools.llm.aidl import Aidl
+from aidl_lang.tools.llm.messages import find_program
+from eval.tests.conftest import Evaluation
 from tests.commands import Result
 from tests.documents import ROOT
 
@@ -156,18 +159,18 @@ def test_what_the_command_line_refuses(evaluation: Evaluation) -> None:
     assert not evaluation.out.exists()
 
 
-def test_the_recording_of_version_0_1(evaluation: Evaluation, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_recording_of_version_0_1() -> None:
     """Its table in the documentation; of OpenSCAD only last programs were kept, all of them valid."""
-    monkeypatch.setattr(measures, "edit", unedited)
     kept = load(TRIAL).values()
     assert len(kept) == 18
     assert sum(len(c.replies) for c in kept if c.variant == "full") == 24
     assert all(len(c.replies) == 1 for c in kept if c.variant == "openscad")
-    done = _replay(evaluation, TRIAL, "--variants", "full", "--prompts", "game_controller")
-    assert done.code == 0
-    codes = [a["verdict"]["codes"] for a in evaluation.record("game_controller", "full", 1)["attempts"]]
-    assert codes[:3] == [["E0518"], ["E0518"], []]
-    assert evaluation.figures("full")["valid at first"]["part"] == 0
+    language = Aidl()
+    conversation = language.conversation()
+    (replies,) = (c.replies for c in kept if (c.prompt, c.variant) == ("game_controller", "full"))
+    programs = [find_program(reply.text, language.fences, language.reads)[0] for reply in replies[:3]]
+    assert [conversation.judge(program or "").codes for program in programs[:2]] == [("E0518",)] * 2
+    assert compile(SourceFile("game_controller.aidl", programs[2] or "")).ok
     page = (ROOT / "eval" / "README.md").read_text("utf-8")
     assert f"| valid at first | {shown(Share(8, 9))} | {shown(Share(9, 9))} |" in page
 

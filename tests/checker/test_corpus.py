@@ -120,11 +120,12 @@ def unused() -> set[str]:
     """Returns the public constraints that no program of the corpus states, and the measures and places that
     none names.
     """
-    blocks = [node.items for node in _corpus() if isinstance(node, ast.Constrain)]
+    nodes = _corpus()
+    blocks = [node.items for node in nodes if isinstance(node, ast.Constrain)]
     items = [n.value for b in blocks for n in ast.walk(b) if isinstance(n, ast.ExpressionStatement)]
     measures = _public(ast.FunctionDefinition, "measures.aidl", "clearance.aidl", "placement.aidl")
     assert {"gap", "clearance", "between"} <= measures
-    return (_public(ast.ConstraintDefinition) - _called(items)) | (measures - _called(_corpus()))
+    return (_public(ast.ConstraintDefinition) - _called(items)) | (measures - _called(nodes))
 
 
 def _ends(path: Path) -> list[dict[str, float]]:

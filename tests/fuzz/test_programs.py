@@ -92,7 +92,9 @@ def test_what_is_large_ends_too(text: str) -> None:
     assert finding(text) is None
 
 
-@pytest.mark.parametrize("seed", range(tried(60)))
+@pytest.mark.parametrize(
+    "seed", [pytest.param(n, marks=[pytest.mark.slow] if n == 2 else []) for n in range(tried(60))]
+)
 def test_whatever_is_written_ends_with_an_answer(seed: int) -> None:
     """Soups of tokens, programs with something changed, random calls and assemblies."""
     assert finding(program(seed)[1]) is None

@@ -45,8 +45,8 @@ def gbnf() -> Recogniser:
 
 
 def test_gbnf_takes_the_same_programs(gbnf: Recogniser) -> None:
-    short = [text for _, text in sorted(all_programs().items()) if len(text) < (300 if TRIES_ALL else 150)]
-    texts = short[:: 20 if TRIES_ALL else 110]
+    short = [text for _, text in sorted(all_programs().items()) if len(text) < (300 if TRIES_ALL else 80)]
+    texts = short[:: 20 if TRIES_ALL else 30]
     assert len(texts) > 3
     assert [text for text in texts if gbnf.takes(text) == bool(syntax_errors(text))] == []
 
