@@ -6,7 +6,6 @@ What a new name needs besides, and what is generated, is told by `test_public_na
 from __future__ import annotations
 
 import re
-from pathlib import Path
 
 import pytest
 
@@ -31,9 +30,6 @@ ENTRIES = list(reference().entries.values())
 
 NOT_WORDS = frozenset({"comprehension"})
 """Sections on the language that are not headed by a word of it, a kind or an attribute."""
-
-TOKENS = 8000
-"""What the guide may take of a model's attention."""
 
 
 # --- Every public name is documented --------------------------------------------------------------
@@ -134,15 +130,6 @@ def test_links_in_generated_texts_lead_somewhere() -> None:
 
 
 # --- The guide ------------------------------------------------------------------------------------
-
-
-def test_guide_is_short_enough() -> None:
-    import mistral_common
-    from mistral_common.tokens.tokenizers.tekken import Tekkenizer
-
-    vocabulary = Path(mistral_common.__file__).parent / "data" / "tekken_240911.json"
-    tokens = Tekkenizer.from_file(str(vocabulary)).encode(guide(), bos=False, eos=False)
-    assert len(tokens) <= TOKENS
 
 
 def test_guide_names_everything_that_can_be_called() -> None:

@@ -183,6 +183,7 @@ def test_all_pieces_of_a_part_weigh() -> None:
     assert (whole.mass, leg.mass, leg.quantity) == (pytest.approx(1166.4), pytest.approx(259.2), 4)
 
 
+@pytest.mark.usefixtures("at_once")
 def test_a_variant_weighs_with_all_its_pieces() -> None:
     one = '@quantity(3) @material("oak") @thickness(10mm) solid s { param w = 20 in 10..30; '
     one += "r = rectangle(center: origin, width: w, height: 10) }"

@@ -72,10 +72,10 @@ def test_workers_are_killed_at_two_hundred_instants(folder: Path) -> None:
 def killed(folder: Path, waits: Sequence[Callable[[], object]]) -> None:
     """Begins a sweep and kills it after each wait; what the last one leaves is gone on with."""
     drawings = "out/{width}-{style}.svg"
-    assert main(words(12, drawings, "whole.csv")) == 0
+    assert main(words(4, drawings, "whole.csv")) == 0
     for path in (folder / "out").iterdir():
         path.unlink()
-    again = [*words(12, drawings, "table.csv"), "--resume"]
+    again = [*words(4, drawings, "table.csv"), "--resume"]
     for wait in waits:
         run = begin(again)
         wait()
@@ -90,7 +90,7 @@ def killed(folder: Path, waits: Sequence[Callable[[], object]]) -> None:
             (folder / "table.csv").unlink()
     assert main(again) == 0
     assert (folder / "table.csv").read_bytes() == (folder / "whole.csv").read_bytes()
-    assert len(list((folder / "out").glob("[!.]*.svg"))) == 24
+    assert len(list((folder / "out").glob("[!.]*.svg"))) == 8
     assert not (folder / "table.csv.sweep").exists()
 
 
