@@ -53,7 +53,7 @@ def once(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(pipeline, "compile", _once)
 
 
-_KEPT: dict[object, pipeline.Compiled] = {}
+KEPT: dict[object, pipeline.Compiled] = {}
 _compile = pipeline.compile
 
 
@@ -69,9 +69,9 @@ def _once(
     if memory is not None or checked is not None or "import" in source.text or "font" in source.text:
         return _compile(source, world, params, settings, show, memory, checked)
     key = (source.name, source.text, tuple((params or {}).items()), settings, tuple(show))
-    if key not in _KEPT:
-        _KEPT[key] = _compile(source, world, params, settings, show)
-    return _KEPT[key]
+    if key not in KEPT:
+        KEPT[key] = _compile(source, world, params, settings, show)
+    return KEPT[key]
 
 
 @cache

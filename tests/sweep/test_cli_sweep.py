@@ -139,17 +139,7 @@ def test_five_hundred_signs(tmp_path: Path) -> None:
 
 def test_progress_on_a_terminal(tmp_path: Path) -> None:
     (tmp_path / "plate.aidl").write_text(PLATE)
-    words = [
-        sys.executable,
-        "-m",
-        "aidl_lang",
-        "sweep",
-        "plate.aidl",
-        "-D",
-        "width=80,100,120",
-        "--jobs",
-        "1",
-    ]
+    words = [sys.executable, *"-m aidl_lang sweep plate.aidl -D width=80,100,120 --jobs 1".split()]
     main_end, other_end = pty.openpty()
     with subprocess.Popen(words, cwd=tmp_path, stderr=other_end, stdout=subprocess.DEVNULL) as run:
         os.close(other_end)
