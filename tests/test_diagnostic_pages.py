@@ -62,28 +62,9 @@ def test_page_shows_the_mistake_and_mends_it(code: str) -> None:
 
 def test_only_pages_about_use_do_without_programs() -> None:
     without = [code for code in CODES if not programs(PAGES / f"{code}.md")]
-    said_by_verbs = (
-        "E09",
-        "E08",
-        "W072",
-        "E0602",
-        "E0603",
-        "E0606",
-        "W0607",
-        "N0731",
-        "N0741",
-        "N0742",
-        "W0733",
-        "W0736",
-        "W0757",
-        "N0756",
-        "N0757",
-        "W0758",
-        "N0754",
-        "N0755",
-        "N0759",
-    )
-    assert [code for code in without if not code.startswith(said_by_verbs)] == []
+    said_by_verbs = "E08 E09 E0602 E0603 E0606 W0607 W072 N0731 W0733 W0736 N0741 N0742 N0754 N0755 N0756 "
+    said_by_verbs += "W0757 N0757 W0758 N0759"
+    assert [code for code in without if not code.startswith(tuple(said_by_verbs.split()))] == []
 
 
 def _compile(page: Path, heading: str) -> list[str]:

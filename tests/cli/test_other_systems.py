@@ -50,8 +50,8 @@ solid plate {
 
 COMMANDS = {
     "compile plate.aidl -o p.svg -o p.dxf -o p.pdf -o p.png -o p.json": "solved",
-    "check plate.aidl --ends": "2 ends of 1 param tried",
-    "sweep plate.aidl -D width=50 -o {n}.svg -o t.csv": "1 variant, 1 well",
+    "check plate.aidl": "no mistakes found",
+    "sweep plate.aidl --jobs 1 -D width=50 -o {n}.svg -o t.csv": "1 variant, 1 well",
     "measure plate.aidl": "area",
     "show plate.aidl --protocol ascii": "___",
     "fmt --check plate.aidl": "",

@@ -153,7 +153,7 @@ def test_an_interrupt_while_parts_are_nested_writes_nothing(
 @pytest.mark.parametrize(
     ("is_buffered", "arguments"),
     [
-        *[(True, []), (True, ["--help"]), (False, ["--help"]), (True, ["explain", "E0301"])],
+        *[(True, []), (False, ["--help"])],
         *[(False, ["check", "good.aidl", "--json"]), (True, ["compile", "good.aidl", "-o", "-"])],
     ],
 )

@@ -73,8 +73,9 @@ def test_params_and_dimensions(aidl: Aidl):
     assert "200" not in narrow.out
 
 
-@pytest.mark.parametrize("width", ["1", "300"])
-@pytest.mark.parametrize("protocol", ["blocks", "braille", "ascii", "sixel"])
+@pytest.mark.parametrize(
+    ("width", "protocol"), [("1", "blocks"), ("1", "sixel"), ("300", "braille"), ("300", "ascii")]
+)
 @pytest.mark.parametrize("size", ["width: 1e6, height: 1", "width: 1, height: 1e6"])
 def test_extreme_proportions(aidl: Aidl, folder: Path, width: str, protocol: str, size: str):
     (folder / "long.aidl").write_text(f"solid s {{ r = rectangle({size}) }}")

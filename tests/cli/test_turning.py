@@ -47,6 +47,7 @@ def test_terminal_is_told_how_far_it_is(aidl: Aidl, monkeypatch: pytest.MonkeyPa
     assert "\r\x1b[K0 of 2 ends tried\r\x1b[K1 of 2 ends tried\r\x1b[K2 of 2 ends tried\r\x1b[K" in told
 
 
+@pytest.mark.usefixtures("at_once")
 def test_python_gives_warnings_with_fixes() -> None:
     first, second = aidl_lang.check(PLATE, range=True)
     assert (first.code, first.span and first.span.line, second.code) == ("W0607", 2, "W0607")

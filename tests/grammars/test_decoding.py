@@ -10,6 +10,7 @@ from aidl_lang.common.source import SourceFile
 from aidl_lang.syntax.automaton import Automaton
 from aidl_lang.syntax.tables import END, KINDS, Token, load_tables, tokenize
 from aidl_lang.syntax.tree import Builder
+from aidl_lang.tools.reference import guide
 from tests.amount import some, tried
 from tests.grammars.engines import all_programs, engine, syntax_errors
 
@@ -159,8 +160,22 @@ def test_not_taken(text: str) -> None:
     assert not engine().takes(text)[2]
 
 
+def test_a_block_begins_on_a_line_of_its_own() -> None:
+    block = "```aidl\nsolid plate {\n    outline = rectangle(center: origin, width: 60, height: 40)\n}\n```"
+    assert engine(fenced=True).takes(f"Here it is:\n\n{block}")[2]
+    assert not engine(fenced=True).takes(f"Here it is: {block}")[2]
+
+
 @pytest.mark.parametrize("piece", ["\n", " ", "// loop\n", "\n// loop\n", "//", "x", "1"])
 def test_nothing_outside_brackets_and_statements_goes_on_for_ever(piece: str) -> None:
     text = "x = a " + 5000 * piece
     taken, of, _ = engine().takes(text)
     assert taken < of
+
+
+TOKENS = 8000
+"""What the guide may take of a model's attention."""
+
+
+def test_the_guide_is_short_enough() -> None:
+    assert len(engine().vocabulary(guide())) <= TOKENS

@@ -10,7 +10,6 @@ from typing import Any
 import pytest
 
 from aidl_lang.tools.cli import main
-from tests.grammars.engines import engine
 from tests.llm.scripted import Failed
 
 PROGRAM = "solid plate {\n    outline = rectangle(center: origin, width: 60, height: 40)\n}\n"
@@ -99,10 +98,3 @@ def test_anthropic_takes_none(
     assert capsys.readouterr().err == (
         "error[E0950]: anthropic:m takes no grammar\n  = hint: leave --constrain out\n"
     )
-
-
-# --- What the grammar lets through is found -------------------------------------------------------
-
-
-def test_a_block_begins_on_a_line_of_its_own() -> None:
-    assert not engine(True).takes(f"Here it is: {REPLY[REPLY.index('```') :]}")[2]

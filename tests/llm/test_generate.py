@@ -131,21 +131,17 @@ def test_fixes_are_told_with_what_is_left(generate: Callable[..., Any]) -> None:
 # --- What gets lost -------------------------------------------------------------------------------
 
 
-def test_a_conflict_is_told_in_the_words_of_the_author(generate: Callable[..., Any]) -> None:
-    _, server = generate([block(CONFLICT), block(PLATE)], "-o", "plate.aidl")
+def test_a_conflict_is_told_and_what_is_deleted_for_it_asked_for_and_counted(
+    generate: Callable[..., Any], capsys: pytest.CaptureFixture[str]
+) -> None:
+    code, server = generate([block(CONFLICT), *[block(DELETED)] * 4], "-o", "plate.aidl")
+    assert code == 0
     told = said(server, 1)
     assert "in the check of solve.\n\nerror E0601" in told
     assert (
         "`bore.left >= outline.right - 12` and `bore.right <= outline.left + 20` cannot hold together" in told
     )
     assert "Degrees of freedom left beside these constraints: " in told
-
-
-def test_a_deleted_constraint_is_asked_for_by_name_and_counted(
-    generate: Callable[..., Any], capsys: pytest.CaptureFixture[str]
-) -> None:
-    code, server = generate([block(CONFLICT), *[block(DELETED)] * 4], "-o", "plate.aidl")
-    assert code == 0
     told = said(server, 2)
     assert "`bore.right <= outline.left + 20`" in told
     assert "Bring each of these back" in told

@@ -20,8 +20,8 @@ def free_port() -> int:
 class LocalCluster:
     """Starts and ends schedulers and workers; each is a group of processes, which ends as one."""
 
-    def __init__(self, folder: Path, workers: int, threads: int = 1) -> None:
-        self.folder, self.port, self.threads = folder, free_port(), threads
+    def __init__(self, folder: Path, workers: int) -> None:
+        self.folder, self.port = folder, free_port()
         self.address = f"tcp://127.0.0.1:{self.port}"
         self.workers: list[subprocess.Popen[bytes]] = []
         self.scheduler = self._scheduler()
@@ -40,7 +40,7 @@ class LocalCluster:
         raise AssertionError((self.folder / "scheduler.log").read_text())
 
     def add_worker(self) -> None:
-        words = ["worker", self.address, "--host", "127.0.0.1", "--nthreads", str(self.threads)]
+        words = ["worker", self.address, "--host", "127.0.0.1", "--nthreads", "1"]
         self.workers.append(self._begin(f"worker{len(self.workers)}", *words, "--no-dashboard"))
 
     def _begin(self, name: str, *words: str) -> subprocess.Popen[bytes]:

@@ -139,7 +139,7 @@ def test_five_hundred_signs(tmp_path: Path) -> None:
 
 def test_progress_on_a_terminal(tmp_path: Path) -> None:
     (tmp_path / "plate.aidl").write_text(PLATE)
-    words = [sys.executable, "-m", "aidl_lang", "sweep", "plate.aidl", "-D", "width=*"]
+    words = [sys.executable, *"-m aidl_lang sweep plate.aidl -D width=80,100,120 --jobs 1".split()]
     main_end, other_end = pty.openpty()
     with subprocess.Popen(words, cwd=tmp_path, stderr=other_end, stdout=subprocess.DEVNULL) as run:
         os.close(other_end)
@@ -154,7 +154,7 @@ def test_progress_on_a_terminal(tmp_path: Path) -> None:
             said += part
         assert run.wait() == 1
     os.close(main_end)
-    assert re.search(r"\d/5 .*variants/s?.*now width=\d+", said.decode().replace("\r", "\n"))
+    assert re.search(r"\d/3 .*variants/s?.*now width=\d+", said.decode().replace("\r", "\n"))
 
 
 def test_progress_for_programs(folder: Path, aidl: Command) -> None:

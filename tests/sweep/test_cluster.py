@@ -26,11 +26,12 @@ PROGRAM = 'import "lib.aidl"\n' + PLATE.replace("height: 30mm", "height: tall")
 
 
 @pytest.fixture(scope="module")
-def shared(tmp_path_factory: pytest.TempPathFactory) -> Iterator[LocalCluster]:
-    """A cluster that nobody kills, with one worker for two calls at a time."""
-    cluster = LocalCluster(tmp_path_factory.mktemp("logs"), workers=1, threads=2)
-    yield cluster
-    cluster.close()
+def shared() -> Iterator[str]:
+    """The address of a cluster that nobody kills, with one worker for two calls at a time."""
+    distributed = pytest.importorskip("distributed")
+    settings = {"DASK_DISTRIBUTED__WORKER__PROFILE__ENABLED": "False"}
+    with distributed.LocalCluster(1, 2, dashboard_address=None, env=settings) as cluster:
+        yield cluster.scheduler_address
 
 
 @pytest.fixture
@@ -93,10 +94,10 @@ def ended(run: subprocess.Popen[str], code: int = 1) -> str:
     return said
 
 
-def test_a_sweep_on_a_cluster_equals_one_here(folder: Path, shared: LocalCluster) -> None:
+def test_a_sweep_on_a_cluster_equals_one_here(folder: Path, shared: str) -> None:
     write_programs(folder)
     assert main(words_for("local.csv", 6)) == 1
-    assert main(words_for("remote.csv", 6, "--on", shared.address)) == 1
+    assert main(words_for("remote.csv", 6, "--on", shared)) == 1
     same(folder, "local.csv", "remote.csv", 6)
 
 
@@ -144,8 +145,8 @@ def test_a_client_that_is_interrupted_leaves_nothing_behind_and_goes_on(
     same(tmp_path, "local.csv", "remote.csv", 120)
 
 
-def test_limits_hold_on_a_cluster(tmp_path: Path, shared: LocalCluster) -> None:
-    engine = Cluster(shared.address, "aidl_lang.common.processes")
+def test_limits_hold_on_a_cluster(tmp_path: Path, shared: str) -> None:
+    engine = Cluster(shared, "aidl_lang.common.processes")
     try:
         crew: Crew[str, str] = Crew(engine)
         for word in ("well", "die", "hang", "raise", "too"):
@@ -161,10 +162,10 @@ def test_limits_hold_on_a_cluster(tmp_path: Path, shared: LocalCluster) -> None:
         engine.close()
 
 
-def test_a_worker_with_another_package_is_told(shared: LocalCluster, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_worker_with_another_package_is_told(shared: str, monkeypatch: pytest.MonkeyPatch) -> None:
     mine = cluster_module.package()
     monkeypatch.setattr(cluster_module, "package", lambda: "0.0.1+feed")
-    engine = Cluster(shared.address, "aidl_lang.common.processes")
+    engine = Cluster(shared, "aidl_lang.common.processes")
     try:
         crew: Crew[str, str] = Crew(engine)
         crew.give("it", 10.0, obey, "well", "/nowhere")

@@ -97,7 +97,7 @@ def test_dropping_removes_no_file_outside(tmp_path: Path) -> None:
     with sqlite3.connect(tmp_path / "cache" / "cache.db") as database:
         database.execute("UPDATE Cache SET filename = '../precious.txt', size = 1000000")
     database.close()
-    for number in range(40):
+    for number in range(4):
         store.put(f"{number}", OUTCOME, {})
     assert store.get("key", nothing_read) is None
     assert victim.read_text() == "mine"
@@ -106,7 +106,7 @@ def test_dropping_removes_no_file_outside(tmp_path: Path) -> None:
 def _fill(folder: str, first: int, begin: Callable[[], object]) -> None:
     store = Store(Path(folder))
     begin()
-    for number in range(first, first + 30):
+    for number in range(first, first + 10):
         store.put(f"{number}", Outcome("solved", True, asserts=number), {})
 
 
@@ -116,12 +116,12 @@ def test_processes_share_it(tmp_path: Path) -> None:
     begun = context.Event()
     other = context.Process(target=_fill, args=(folder, 0, begun.set))
     other.start()
-    _fill(folder, 15, lambda: begun.wait(60))
+    _fill(folder, 5, lambda: begun.wait(60))
     other.join()
     assert other.exitcode == 0
     store = Store(tmp_path / "cache")
-    found = [store.get(f"{number}", nothing_read) for number in range(45)]
-    assert [each and each.asserts for each in found] == list(range(45))
+    found = [store.get(f"{number}", nothing_read) for number in range(15)]
+    assert [each and each.asserts for each in found] == list(range(15))
 
 
 def test_folders_that_are_no_cache_are_left_alone(tmp_path: Path) -> None:

@@ -69,13 +69,13 @@ def test_workers_are_killed_at_two_hundred_instants(folder: Path) -> None:
     without_workers(folder, 20, seed=4, widths=50, times=10)
 
 
-def killed(folder: Path, waits: Sequence[Callable[[], object]]) -> None:
+def killed(folder: Path, waits: Sequence[Callable[[], object]], *, widths: int) -> None:
     """Begins a sweep and kills it after each wait; what the last one leaves is gone on with."""
     drawings = "out/{width}-{style}.svg"
-    assert main(words(12, drawings, "whole.csv")) == 0
+    assert main(words(widths, drawings, "whole.csv")) == 0
     for path in (folder / "out").iterdir():
         path.unlink()
-    again = [*words(12, drawings, "table.csv"), "--resume"]
+    again = [*words(widths, drawings, "table.csv"), "--resume"]
     for wait in waits:
         run = begin(again)
         wait()
@@ -90,7 +90,7 @@ def killed(folder: Path, waits: Sequence[Callable[[], object]]) -> None:
             (folder / "table.csv").unlink()
     assert main(again) == 0
     assert (folder / "table.csv").read_bytes() == (folder / "whole.csv").read_bytes()
-    assert len(list((folder / "out").glob("[!.]*.svg"))) == 24
+    assert len(list((folder / "out").glob("[!.]*.svg"))) == 2 * widths
     assert not (folder / "table.csv.sweep").exists()
 
 
@@ -101,10 +101,10 @@ def test_a_killed_sweep_goes_on(folder: Path) -> None:
             assert time.monotonic() < until, (folder / "said").read_text()
             time.sleep(0.01)
 
-    killed(folder, [has_drawn])
+    killed(folder, [has_drawn], widths=4)
 
 
 @pytest.mark.slow
 def test_a_sweep_killed_twenty_times_goes_on(folder: Path) -> None:
     chance = random.Random(2)
-    killed(folder, [partial(time.sleep, chance.uniform(0.3, 5.0)) for _ in range(20)])
+    killed(folder, [partial(time.sleep, chance.uniform(0.3, 5.0)) for _ in range(20)], widths=12)

@@ -34,6 +34,7 @@ def test_a_sweep_is_an_iterator_and_a_table(tmp_path: Path) -> None:
     assert (tmp_path / "80.svg").read_bytes() == direct.export(".svg", theme="ink")
 
 
+@pytest.mark.usefixtures("at_once")
 def test_neighbours_of_different_kind_are_told() -> None:
     """A slot leaves its plate between 60 and 80; that more bores are asked for is no change of kind."""
     text = """
