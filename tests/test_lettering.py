@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import math
-import subprocess
-import sys
 from collections.abc import Iterator
 from itertools import pairwise
 
@@ -151,15 +149,6 @@ def test_letters_of_single_lines_are_drawn_once() -> None:
     for capital in "ABCDEFGHIJKLMNOPRSTUVWXYZ":
         (glyph,) = lettering.typeset(capital, "left", 1.6, font)
         assert (glyph.box[1], glyph.box[3]) == pytest.approx((0, 1), abs=1e-9), capital
-
-
-def test_no_font_is_loaded_without_text() -> None:
-    program = (
-        "import sys; from aidl_lang import pipeline; from aidl_lang.common.source import SourceFile;"
-        "pipeline.compile(SourceFile('p', 'solid s { c = circle(radius: 3) }'));"
-        "sys.exit('fontTools' in sys.modules)"
-    )
-    assert subprocess.run([sys.executable, "-c", program], check=False).returncode == 0
 
 
 def test_many_labels_cost_little_to_solve() -> None:

@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 import aidl_lang
-from tests.amount import tried
+from tests.amount import TRIES_ALL, tried
 from tests.checker.checking import check
 
 TRIALS = tried(40)
@@ -95,6 +95,8 @@ def test_closed_forms_of_clearance_agree_with_the_outlines(first: str) -> None:
     chance = random.Random(first)
     lines = ["drawing all {"]
     for i, second in enumerate(CONVEX):
+        if not TRIES_ALL and (i - list(CONVEX).index(first)) % 7 in (3, 5, 6):
+            continue  # of each two of the seven one order is left
         shapes = (
             CONVEX[kind].format(
                 x=round(chance.uniform(-25, 25), 3),
