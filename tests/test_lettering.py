@@ -86,7 +86,7 @@ def test_ink_is_that_of_the_font(character: str) -> None:
 @FACES
 def test_faces_of_letters_are_what_their_contours_enclose(font: lettering.Font) -> None:
     """Nested contours in turns, by another geometry; counted for every character."""
-    for character in CHARACTERS if TRIES_ALL else LATIN[:94]:
+    for character in CHARACTERS if TRIES_ALL else LATIN[:94:2]:
         for glyph in lettering.typeset(character, "left", 1.6, font):
             curves = [Line(*c) if len(c) == 2 else Bezier(*c) for c in glyph.curves]  # type: ignore[call-arg]
             region = lettered_region([curves])
@@ -117,7 +117,7 @@ def test_letters_that_may_meet_are_arranged() -> None:
 @FACES
 def test_stencils_enclose_nothing(font: lettering.Font) -> None:
     """Of what a character is made of nothing goes all around anything, and only bridges were taken away."""
-    for character in CHARACTERS if TRIES_ALL else LATIN[:94]:
+    for character in CHARACTERS if TRIES_ALL else LATIN[:94:2]:
         for glyph in lettering.typeset(character, "left", 1.6, font):
             whole, cut = ink(glyph), ink(lettering.Glyph(stencilled(glyph.curves, 0.1), glyph.box))
             assert not any(part.interiors for part in parts(cut)), character

@@ -80,7 +80,7 @@ def thread_of(size: str, head: str, length: float) -> float:
     return (25 if d <= 3 else 38) if head == "pan" else 2 * d + 12
 
 
-@tries(60)
+@tries(40)
 @given(sizes, st.sampled_from(HEADS), lengths, st.sampled_from(["lines", "teeth", "none"]))
 def test_a_bolt_is_as_its_standard_says(size: str, head: str, length: int, thread: str) -> None:
     if size == "m12" and head == "pan":

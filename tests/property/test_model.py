@@ -75,7 +75,7 @@ def is_degenerate(found: dict[str, Any]) -> bool:
 
 
 @given(sketches())
-@profile(30)
+@profile(20)
 def test_well_formed_programs_solve_and_their_constraints_hold(sketch: Sketch) -> None:
     text = sketch.text()
     note(text)
@@ -88,7 +88,7 @@ def test_well_formed_programs_solve_and_their_constraints_hold(sketch: Sketch) -
 
 
 @given(outlines())
-@profile(25)
+@profile(20)
 def test_outlines_that_are_said_to_be_solved_are(outline: tuple[list[str], list[str]]) -> None:
     text = outline_text(*outline)
     note(text)
