@@ -17,15 +17,14 @@ from aidl_lang.geometry.curves import Vec
 from aidl_lang.geometry.drawing import draw
 from aidl_lang.geometry.solved import SolvedStructure
 from tests import compiled
+from tests.amount import tries
 from tests.documents import ROOT
 from tests.geometry.models import circle, model, polygon, structure
 
 PARAMS: dict[str, dict[str, str | float]] = {
     "telephone": {"width": 200},
     "motor_bracket": {"motor": "nema23"},
-    "key": {"pitch": 4},
     "lighthouse": {"stripes": 4},
-    "phone_stand": {"lean": 60},
 }
 
 
@@ -330,6 +329,7 @@ def _version(moves: list[Move]) -> Version:
     return Version(solved, draw(solved)[0])
 
 
+@tries(60)
 @given(st.lists(MOVES, min_size=1, max_size=3))
 def test_random_motions_are_found(moves: list[Move]) -> None:
     found = compare(_version([Move()] * len(moves)), _version(moves))

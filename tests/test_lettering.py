@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import math
-import subprocess
-import sys
 from collections.abc import Iterator
 from itertools import pairwise
 
@@ -88,7 +86,7 @@ def test_ink_is_that_of_the_font(character: str) -> None:
 @FACES
 def test_faces_of_letters_are_what_their_contours_enclose(font: lettering.Font) -> None:
     """Nested contours in turns, by another geometry; counted for every character."""
-    for character in CHARACTERS if TRIES_ALL else LATIN[:94]:
+    for character in CHARACTERS if TRIES_ALL else LATIN[:94:2]:
         for glyph in lettering.typeset(character, "left", 1.6, font):
             curves = [Line(*c) if len(c) == 2 else Bezier(*c) for c in glyph.curves]  # type: ignore[call-arg]
             region = lettered_region([curves])
@@ -119,7 +117,7 @@ def test_letters_that_may_meet_are_arranged() -> None:
 @FACES
 def test_stencils_enclose_nothing(font: lettering.Font) -> None:
     """Of what a character is made of nothing goes all around anything, and only bridges were taken away."""
-    for character in CHARACTERS if TRIES_ALL else LATIN[:94]:
+    for character in CHARACTERS if TRIES_ALL else LATIN[:94:2]:
         for glyph in lettering.typeset(character, "left", 1.6, font):
             whole, cut = ink(glyph), ink(lettering.Glyph(stencilled(glyph.curves, 0.1), glyph.box))
             assert not any(part.interiors for part in parts(cut)), character
@@ -151,15 +149,6 @@ def test_letters_of_single_lines_are_drawn_once() -> None:
     for capital in "ABCDEFGHIJKLMNOPRSTUVWXYZ":
         (glyph,) = lettering.typeset(capital, "left", 1.6, font)
         assert (glyph.box[1], glyph.box[3]) == pytest.approx((0, 1), abs=1e-9), capital
-
-
-def test_no_font_is_loaded_without_text() -> None:
-    program = (
-        "import sys; from aidl_lang import pipeline; from aidl_lang.common.source import SourceFile;"
-        "pipeline.compile(SourceFile('p', 'solid s { c = circle(radius: 3) }'));"
-        "sys.exit('fontTools' in sys.modules)"
-    )
-    assert subprocess.run([sys.executable, "-c", program], check=False).returncode == 0
 
 
 def test_many_labels_cost_little_to_solve() -> None:

@@ -45,7 +45,7 @@ def rocker_end(turn: float) -> np.ndarray:
     return a + along * way + up * np.array([-way[1], way[0]])
 
 
-@pytest.mark.parametrize("turn", range(0, 361, 72))
+@pytest.mark.parametrize("turn", [0, 60, 150, 250])
 def test_it_closes_at_every_angle(turn: float) -> None:
     made = linkage(turn)
     assert made.ok

@@ -20,7 +20,7 @@ from aidl_lang.tools.discretion import Programs
 from aidl_server.ide.completion import complete
 from aidl_server.ide.hover import hover
 from aidl_server.ide.references import CannotError, definitions, renameable
-from aidl_server.ide.workspace import look
+from aidl_server.ide.workspace import View, look
 from tests.amount import tries
 
 LOGO = (
@@ -74,7 +74,7 @@ def test_an_imported_outline_is_cut_as_any_other():
     assert math.isclose(ring.dxf.radius, 3.1, abs_tol=1e-6)
 
 
-@tries(40)
+@tries(20)
 @given(st.floats(-200, 200), st.floats(0.1, 8), st.floats(-50, 50), st.floats(-50, 50))
 def test_its_box_is_that_of_its_curves_wherever_it_is(angle: float, scale: float, x: float, y: float):
     """The box that constraints see, worked out from formulas, is that of the drawing, from its curves."""
@@ -167,13 +167,19 @@ solid s {
 """
 
 
-@pytest.fixture
-def view(tmp_path: Path):
-    (tmp_path / "logo.svg").write_bytes(LOGO)
-    return look(tmp_path / "t.aidl", PROGRAM, DiskWorld(tmp_path))
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    found = tmp_path_factory.mktemp("logo")
+    (found / "logo.svg").write_bytes(LOGO)
+    return found
 
 
-def test_names_in_a_drawing_are_completed(view):
+@pytest.fixture(scope="module")
+def view(folder: Path) -> View:
+    return look(folder / "t.aidl", PROGRAM, DiskWorld(folder))
+
+
+def test_names_in_a_drawing_are_completed(view: View):
     at = PROGRAM.index("logo.smile") + len("logo.")
     assert {"smile", "frame", "holes", "left_hole", "slit"} <= {
         c.label.partition("(")[0] for c in complete(view, at)
@@ -185,16 +191,16 @@ def test_names_in_a_drawing_are_completed(view):
 
 
 @pytest.mark.parametrize("offset", range(0, len(PROGRAM), 3))
-def test_questions_about_a_drawing_have_answers(view, offset: int):
+def test_questions_about_a_drawing_have_answers(view: View, offset: int):
     hover(view, offset)
     definitions(view, offset)
     complete(view, offset)
 
 
-def test_it_is_defined_in_its_file_and_keeps_its_names(view, tmp_path: Path):
+def test_it_is_defined_in_its_file_and_keeps_its_names(view: View, folder: Path):
     at = PROGRAM.index("smile")
     (place,) = definitions(view, at)
-    assert view.file(place.source) == tmp_path / "logo.svg"
+    assert view.file(place.source) == folder / "logo.svg"
     assert "smile of logo.svg: 20 × 13 mm" in str(hover(view, at))
     with pytest.raises(CannotError, match="`smile` is called so in the drawing that is imported"):
         renameable(view, at)

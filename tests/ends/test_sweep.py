@@ -88,6 +88,6 @@ def test_process_that_breaks_is_a_result(
     monkeypatch: pytest.MonkeyPatch, breaking: object, said: str
 ) -> None:
     monkeypatch.setattr(ends, "tried", breaking)
-    monkeypatch.setattr(SweepJob, "seconds", 1.0 if breaking is _hangs else 30.0)
+    monkeypatch.setattr(SweepJob, "seconds", 0.2 if breaking is _hangs else 30.0)
     turned = swept("solid a { param r = 2 in 1..3; b = circle(center: origin, radius: r) }").turned
     assert [sentence(each, "plate.aidl") for each in turned] == [f"at `r = {r}` {said}" for r in (1, 3)]

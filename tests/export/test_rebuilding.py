@@ -545,8 +545,9 @@ def check(path: Path | None, text: str) -> None:
     assert not wrong, "\n".join(wrong)
 
 
+QUICK = {"fence_bracket", "flange", "key_rack", "linkage"}
 FILES = [
-    pytest.param(path, id=path.stem, marks=[pytest.mark.slow] if path.parent.name != "workshop" else [])
+    pytest.param(path, id=path.stem, marks=[] if path.stem in QUICK else [pytest.mark.slow])
     for path in sorted((ROOT / "examples").rglob("*.aidl"))
 ]
 

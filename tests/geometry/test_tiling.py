@@ -22,6 +22,7 @@ from aidl_lang.geometry.tiling import (
     tiled_bars,
     tiled_strokes,
 )
+from tests.amount import tries
 from tests.geometry.test_outlines import polygon, stars
 
 _REACH = 50
@@ -75,6 +76,7 @@ def test_a_line_is_cut_as_shapely_cuts_it(corners: list[Vec], start: Vec, end: V
 # --- Areas -------------------------------------------------------------------------------------------
 
 
+@tries(40)
 @given(stars(), lattices, st.floats(1, 8))
 def test_areas_are_those_of_copies_cut_one_by_one(corners: list[Vec], lattice: Lattice, size: float) -> None:
     """Squares that overlap or not, in a star."""
@@ -108,6 +110,7 @@ def test_a_copy_about_a_hole_is_not_whole() -> None:
 # --- Strokes -----------------------------------------------------------------------------------------
 
 
+@tries(40)
 @given(stars(), lattices, st.floats(1, 8), st.floats(1, 8))
 def test_strokes_are_those_of_copies_cut_one_by_one(
     corners: list[Vec], lattice: Lattice, width: float, height: float

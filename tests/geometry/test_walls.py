@@ -122,10 +122,10 @@ def test_size_and_place_do_not_matter(scale: float, shift: float):
     assert lengths(found) == pytest.approx((10 * scale, 5 * scale), rel=1e-9)
 
 
-def test_ten_thousand_holes():
-    n, side = 100, 301
+def test_thousands_of_holes():
+    n, side = 50, 151
     holes = [Loop((Circle((3 * i + 2, 3 * j + 2), 1.0),), True) for i in range(n) for j in range(n)]
-    holes[5050] = Loop((Circle((3 * 50 + 2.25, 3 * 50 + 2), 1.0),), True)
+    holes[25 * 50 + 25] = Loop((Circle((3 * 25 + 2.25, 3 * 25 + 2), 1.0),), True)
     found = widths(Region((Face(ring((0, 0), (side, 0), (side, side), (0, side)), tuple(holes)),)))
     assert lengths(found) == pytest.approx((0.75, 2.0))
 
@@ -190,7 +190,7 @@ def plates(draw: st.DrawFn) -> list[SolvedGeometry | SolvedStructure]:
     return [rectangle("r", 0, 0, 80, 60), *holes]
 
 
-@tries(60)
+@tries(30)
 @given(plates())
 def test_walls_of_plates_are_the_distances_between_their_rings(
     members: list[SolvedGeometry | SolvedStructure],

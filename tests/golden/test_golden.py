@@ -12,6 +12,7 @@ import math
 import os
 import re
 from collections.abc import Callable
+from functools import cache
 from itertools import islice
 from pathlib import Path
 from typing import Any
@@ -75,6 +76,7 @@ def _rows(value: Any, indent: str) -> str:
     return f"{left}\n{inner}" + f",\n{inner}".join(rows) + f"\n{indent}{right}"
 
 
+@cache
 def drawn(text: str) -> str:
     return rounded_text(model(text).to_svg())
 

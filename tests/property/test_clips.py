@@ -35,7 +35,7 @@ outlines = st.builds(
     st.tuples(st.integers(-6, 6), st.integers(-6, 6)),
 )
 lines = st.tuples(places, places).filter(lambda ends: ends[0] != ends[1])
-profile = tries(24, phases=(Phase.explicit, Phase.generate))
+profile = tries(16, phases=(Phase.explicit, Phase.generate))
 
 
 def drawing_of(text: str) -> Drawing:

@@ -13,11 +13,11 @@ from pathlib import Path
 import pytest
 
 import aidl_lang
-from tests.amount import tried
+from tests.amount import TRIES_ALL, tried
 from tests.checker.checking import check
 
-TRIALS = tried(40)
-BATCH = min(25, TRIALS)
+BATCH = min(25, tried(40))
+TRIALS = tried(40) // BATCH * BATCH
 ENOUGH = 0.99
 STEP, ROW = 400, 10
 """How far the drawings of a program are apart, and how many stand side by side."""
@@ -95,6 +95,8 @@ def test_closed_forms_of_clearance_agree_with_the_outlines(first: str) -> None:
     chance = random.Random(first)
     lines = ["drawing all {"]
     for i, second in enumerate(CONVEX):
+        if not TRIES_ALL and (i - list(CONVEX).index(first)) % 7 in (3, 5, 6):
+            continue  # of each two of the seven one order is left
         shapes = (
             CONVEX[kind].format(
                 x=round(chance.uniform(-25, 25), 3),

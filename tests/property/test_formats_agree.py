@@ -21,7 +21,7 @@ from hypothesis import strategies as st
 from PIL import Image
 from shapely import Polygon, unary_union
 from shapely.geometry.base import BaseGeometry
-from svgelements import SVG
+from svgelements import SVG, Close, Line
 from svgelements import Path as SvgPath
 
 from aidl_lang import pipeline
@@ -112,10 +112,11 @@ def in_svg(data: bytes, operation: str) -> float:
 
 
 def outline(subpath: object) -> Polygon:
-    way = SvgPath(subpath)
-    return Polygon(
-        [(at.x, at.y) for s in way.segments()[1:] for at in map(s.point, np.arange(CHORDS) / CHORDS)]
-    )
+    spots: list[tuple[float, float]] = []
+    for segment in SvgPath(subpath).segments()[1:]:
+        chords = 1 if isinstance(segment, Line | Close) else CHORDS
+        spots += map(tuple, segment.npoint(np.arange(chords) / chords))
+    return Polygon(spots)
 
 
 def in_dxf(data: bytes, layer: str) -> float:

@@ -41,10 +41,10 @@ HOSTILE = _written() | GENERATED
 CHECKED = [
     "solid s { let x = " + "(" * 90 + "1" + ")" * 90 + " }",
     "solid s { let x = " + "+".join("x1" for _ in range(90)) + " }",
-    "solid s { let x = [" + ", ".join(f"({i}, {i})" for i in range(2_000)) + "] }",
-    "solid s {\n" + "\n".join(f"let v{i} = v{i + 1}" for i in range(2_000)) + "\nlet v2000 = 1 }",
+    "solid s { let x = [" + ", ".join(f"({i}, {i})" for i in range(500)) + "] }",
+    "solid s {\n" + "\n".join(f"let v{i} = v{i + 1}" for i in range(1_200)) + "\nlet v1200 = 1 }",
     "solid s {\n" + "\n".join(f"let v{i} = v{i + 1} + v{(i * 7) % 900}" for i in range(900)) + " }",
-    "\n".join(f"solid s{i} {{ r = circle(radius: {i}) }}" for i in range(600)),
+    "\n".join(f"solid s{i} {{ r = circle(radius: {i}) }}" for i in range(150)),
     "fn f(n) = f(n)\nfn g(n) = h(n)\nfn h(n) = g(n)\nsolid s { let x = f(1) + g(2) }",
     "shape f(n) { inner = f(n) }\nsolid s { a = f(1)\n let x = a.inner.inner.inner.n }",
     "solid t(n) { inner = t(n) }\nsolid s { a = t(1)\n let x = a.inner.inner.inner.n }",

@@ -20,7 +20,7 @@ import aidl_lang
 from aidl_lang.common.source import SourceFile
 from aidl_lang.parser import parse
 from aidl_lang.syntax import ast
-from tests.amount import tries
+from tests.amount import TRIES_ALL, tries
 from tests.checker.checking import broken
 from tests.compiled import FEW
 from tests.documents import ROOT
@@ -75,7 +75,7 @@ def is_degenerate(found: dict[str, Any]) -> bool:
 
 
 @given(sketches())
-@profile(30)
+@profile(20)
 def test_well_formed_programs_solve_and_their_constraints_hold(sketch: Sketch) -> None:
     text = sketch.text()
     note(text)
@@ -88,7 +88,7 @@ def test_well_formed_programs_solve_and_their_constraints_hold(sketch: Sketch) -
 
 
 @given(outlines())
-@profile(25)
+@profile(20)
 def test_outlines_that_are_said_to_be_solved_are(outline: tuple[list[str], list[str]]) -> None:
     text = outline_text(*outline)
     note(text)
@@ -186,7 +186,7 @@ def test_the_order_of_independent_structures_does_not_matter(sketch: Sketch, cha
 def test_the_order_in_an_example_does_not_matter(path: Path) -> None:
     text = path.read_text("utf-8")
     one = document(aidl_lang.compile(text))
-    for seed in range(2):
+    for seed in range(2 if TRIES_ALL else 1):
         other = reordered(text, random.Random(seed))
         assert other != text or "constrain {" not in text
         assert apart(one, document(aidl_lang.compile(other))) < TOLERANCE

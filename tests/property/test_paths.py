@@ -141,7 +141,7 @@ def test_a_spline_through_points_of_a_circle_follows_it(angles: tuple[int, ...])
 
 # --- Gears ---------------------------------------------------------------------------------------
 
-GEARS = [(6, 20.0, 0.0), (12, 20.0, 0.3), (20, 20.0, 0.0), (20, 14.5, 0.0), (31, 25.0, -0.2), (44, 20.0, 0.0)]
+GEARS = [(6, 20.0, 0.0), (12, 14.5, 0.3), (31, 25.0, -0.2)]
 
 
 def gear(parts: dict[str, Any]) -> list[dict[str, Any]]:
@@ -207,7 +207,7 @@ def assert_running(a: Polygon, b: Polygon, module: float) -> None:
 
 
 PAIRS = [
-    (14, 23, 33.0, 2.0, (0.4, 0.25)),
+    (11, 16, 33.0, 2.0, (0.4, 0.25)),
     pytest.param(17, 24, 200.0, 1.5, (0.0, 0.0), marks=pytest.mark.slow),  # as the first, without a shift
     pytest.param(30, 41, 0.0, 1.0, (0.0, 0.0), marks=pytest.mark.slow),
 ]
@@ -265,8 +265,7 @@ def panel(width: float, height: float, edges: list[str], kerf: float = 0.0) -> P
     return Polygon([edge["start"] for edge in indexed(outline, "edges")])
 
 
-@pytest.mark.parametrize("kerf", [0.0, 0.3])
-@pytest.mark.parametrize("height", [40.0, 61.0, 100.0])
+@pytest.mark.parametrize(("height", "kerf"), [(40.0, 0.3), (61.0, 0.0)])
 def test_tabs_fit_the_notches_of_an_edge_as_long(height: float, kerf: float) -> None:
     """Laid edge into edge, two panels fill the whole; a kerf lets them overlap by as much at every step."""
     right = panel(80, height, ["flat", "tabs", "flat", "flat"], kerf)
@@ -306,7 +305,7 @@ def test_six_panels_make_a_box() -> None:
 # --- Free curves -----------------------------------------------------------------------------------
 
 
-def sampled(parts: list[dict[str, Any]], fine: int = 400) -> list[complex]:
+def sampled(parts: list[dict[str, Any]], fine: int) -> list[complex]:
     return [curve(part, k / fine) for part in parts for k in range(fine)] + [curve(parts[-1], 1.0)]
 
 
@@ -314,7 +313,7 @@ def test_a_wave_is_a_sine() -> None:
     program = "drawing d { w = wave(start: fixed((2, 1)), end: fixed((38, 28)), amplitude: 4, waves: 2.5) }"
     parts = geometry(program)["w"]["parts"]
     way = 36 + 27j
-    for p in sampled(indexed(parts, "segment")):
+    for p in sampled(indexed(parts, "segment"), fine=40):
         share = (p - (2 + 1j)) / way
         height = share.imag * abs(way)
         assert height == pytest.approx(4 * math.sin(math.tau * 2.5 * share.real), abs=4e-3)
@@ -334,29 +333,33 @@ def test_a_spiral_grows_evenly(sense: int) -> None:
 
 
 @pytest.mark.parametrize(("call", "side"), [("coil", 4), ("spring", 4)])
-@pytest.mark.parametrize("turns", [1, 2, 5])
+@pytest.mark.parametrize("turns", [1, 3])
 def test_a_cord_is_as_wide_as_said_and_unbroken(call: str, side: float, turns: int) -> None:
     told = f"start: fixed((2, 1)), end: fixed((38, 28)), width: {2 * side}, turns: {turns}"
     segments = indexed(geometry(f"drawing d {{ w = {call}({told}) }}")["w"]["parts"], "segment")
     way = 0.8 + 0.6j
     aside = [((p - (2 + 1j)) / way).imag for p in sampled([s for s in segments if s["type"] == "bezier"], 50)]
     assert [min(aside), max(aside)] == pytest.approx([-side, side], abs=0.02)
-    for a, b in pairwise(sampled(segments, 2000)):
+    for a, b in pairwise(sampled(segments, 1000)):
         assert abs(a - b) < 0.1
 
 
-@pytest.mark.parametrize(("dx", "dy"), [(40, 15), (-40, 15), (40, -15), (-10, -30)])
 @pytest.mark.parametrize("upright", [False, True])
-def test_an_s_is_smooth(dx: int, dy: int, upright: bool) -> None:
-    told = "true" if upright else "false"
-    program = f"drawing d {{ s = s_curve(start: fixed((0, 0)), end: fixed(({dx}, {dy})), upright: {told}) }}"
-    parts = geometry(program)["s"]["parts"]
-    points = sampled([parts["first"], parts["second"]], fine=2000)
-    ways = [b - a for a, b in pairwise(points)]
-    level = [(way.real if upright else way.imag) / abs(way) for way in (ways[0], ways[-1])]
-    assert level == pytest.approx([0, 0], abs=2e-3)
-    assert all(abs(cmath.phase(b / a)) < 5e-3 for a, b in pairwise(ways))
-    assert points[-1] == pytest.approx(complex(dx, dy))
+def test_an_s_is_smooth(upright: bool) -> None:
+    ends = [(40, 15), (-40, 15), (40, -15), (-10, -30)]
+    told = f"upright: {str(upright).lower()}"
+    calls = (
+        f"s[{k}] = s_curve(start: fixed((0, 0)), end: fixed({end}), {told})" for k, end in enumerate(ends)
+    )
+    drawn = geometry(f"drawing d {{ {'; '.join(calls)} }}")
+    for k, end in enumerate(ends):
+        parts = drawn[f"s[{k}]"]["parts"]
+        points = sampled([parts["first"], parts["second"]], fine=2000)
+        ways = [b - a for a, b in pairwise(points)]
+        level = [(way.real if upright else way.imag) / abs(way) for way in (ways[0], ways[-1])]
+        assert level == pytest.approx([0, 0], abs=2e-3)
+        assert all(abs(cmath.phase(b / a)) < 5e-3 for a, b in pairwise(ways))
+        assert points[-1] == pytest.approx(complex(*end))
 
 
 def test_a_spline_stays_near_its_points_where_it_turns_sharply() -> None:

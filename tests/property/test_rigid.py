@@ -111,7 +111,7 @@ def least_inside(problem: Lowered, parts: list[str]) -> tuple[int, int]:
 
 
 @given(st.integers(0, 1_000_000))
-@tries(120)
+@tries(80)
 def test_parts_move_whole(seed: int) -> None:
     text, beams = picture(seed)
     solution = solved(text)
@@ -120,7 +120,7 @@ def test_parts_move_whole(seed: int) -> None:
 
 
 @given(st.integers(0, 1_000_000))
-@tries(100)
+@tries(60)
 def test_as_few_parts_as_possible_change_inside(seed: int) -> None:
     text, _ = picture(seed, most=3)
     solution = solved(text)

@@ -128,7 +128,7 @@ def test_each_value_is_as_if_it_were_compiled_alone(name: str) -> None:
     compiling = walking._compiling(SweepJob("it.aidl", text, None, pipeline.Settings()), source)
     for knob in [k for k in pipeline.compile(source).knobs if has_way(k)][:2]:
         low, high = knob.range or (0.0, 1.0)
-        for share in (0.1, 0.5, 0.51, 0.9):
+        for share in (0.1, 0.5, 0.51):
             value = allowed(knob, low + share * (high - low))
             kept = look(compiling(((knob.path, value),)), value)
             alone = look(pipeline.compile(source, params={knob.path: value}), value)

@@ -276,13 +276,13 @@ def test_a_large_one_is_undecided_as_well() -> None:
     assert freedom.undecided == (tuple(range(len(solution.values))),)
 
 
-def test_small_models_do_without_scipy() -> None:
+def test_small_programs_do_without_scipy_and_without_fonts() -> None:
     program = (
-        "import sys; from tests.solver.build import Model, distance; from aidl_lang.solver import solve;"
-        "from aidl_lang.solver.analysis import analyse; m = Model(); a, b = m.point(0, 0), m.point(3, 4);"
-        "m.equal(distance(a, b) - 5.0); m.equal(distance(b, a) - 5.0); p = m.problem();"
-        "f = analyse(solve(p)); assert (f.degrees, len(f.redundant)) == (3, 1), f;"
-        "assert 'scipy' not in sys.modules"
+        "import sys; from aidl_lang import pipeline; from aidl_lang.common.source import SourceFile;"
+        "text = 'drawing d { a = line((0, 0), (3, 1)); constrain { a.length == 5; a.length == 5 } }';"
+        "made = pipeline.compile(SourceFile('p', text));"
+        "assert (made.model.degrees, [d.code for d in made.diagnostics]) == (2, ['N0602']);"
+        "assert not {'scipy', 'fontTools'} & sys.modules.keys()"
     )
     subprocess.run([sys.executable, "-c", program], check=True)
 
