@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Container, Iterable, Mapping, Sequence
+from collections.abc import Container, Iterable
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -14,8 +14,6 @@ from _pytest.mark import ParameterSet
 import aidl_lang
 from aidl_lang import pipeline
 from aidl_lang.common.source import SourceFile
-from aidl_lang.common.world import World
-from aidl_lang.solver.hierarchy import Memory
 from tests.documents import ROOT
 
 
@@ -45,33 +43,6 @@ def compiled(text: str) -> pipeline.Compiled:
 def model(text: str) -> aidl_lang.Model:
     """The same, as the package has it."""
     return aidl_lang.Model(compiled(text))
-
-
-@pytest.fixture
-def once(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Commands compile a program that reads no other file once in the process, whatever they make of it."""
-    monkeypatch.setattr(pipeline, "compile", _once)
-
-
-KEPT: dict[object, pipeline.Compiled] = {}
-_compile = pipeline.compile
-
-
-def _once(
-    source: SourceFile,
-    world: World | None = None,
-    params: Mapping[str, str | float | bool] | None = None,
-    settings: pipeline.Settings = pipeline.Settings(),
-    show: Sequence[str] = (),
-    memory: Memory | None = None,
-    checked: pipeline.Front | None = None,
-) -> pipeline.Compiled:
-    if memory is not None or checked is not None or "import" in source.text or "font" in source.text:
-        return _compile(source, world, params, settings, show, memory, checked)
-    key = (source.name, source.text, tuple((params or {}).items()), settings, tuple(show))
-    if key not in KEPT:
-        KEPT[key] = _compile(source, world, params, settings, show)
-    return KEPT[key]
 
 
 @cache

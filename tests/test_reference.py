@@ -28,14 +28,6 @@ from tests.documents import ROOT
 
 ENTRIES = list(reference().entries.values())
 
-DEAR = {"chain", "coil", "internal_gear", "mesh", "mesh_angle", "meshes", "spring"}
-"""What takes longest to draw; `tests/spec` has it in `gears.md` and `shapes.md`."""
-DRAWN = [
-    pytest.param(e, id=e.name, marks=[pytest.mark.slow] if e.name in DEAR else [])
-    for e in ENTRIES
-    if e.doc.example
-]
-
 NOT_WORDS = frozenset({"comprehension"})
 """Sections on the language that are not headed by a word of it, a kind or an attribute."""
 
@@ -43,7 +35,7 @@ NOT_WORDS = frozenset({"comprehension"})
 # --- Every public name is documented --------------------------------------------------------------
 
 
-@pytest.mark.parametrize("entry", DRAWN)
+@pytest.mark.parametrize("entry", [pytest.param(e, id=e.name) for e in ENTRIES if e.doc.example])
 def test_example_runs_and_is_drawn_as_committed(entry: Entry) -> None:
     compiled = pipeline.compile(SourceFile(f"{entry.name}.aidl", entry.doc.example))
     found = [d for d in compiled.diagnostics if d.severity is not Severity.NOTE]

@@ -7,7 +7,6 @@ from pathlib import Path
 import pytest
 
 from tests.commands import aidl as aidl
-from tests.compiled import once as once
 from tests.sweep.here import at_once as at_once
 
 GOOD = """\
@@ -29,7 +28,7 @@ solid plate {
 
 
 @pytest.fixture
-def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, at_once: None, once: None) -> Path:
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, at_once: None) -> Path:
     """An empty working directory with three programs in it."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("NO_COLOR", "1")

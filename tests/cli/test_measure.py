@@ -169,6 +169,20 @@ def test_the_table_is_plausible() -> None:
     assert similar("alumnium sheet")[0] == "aluminium"
 
 
+LEGS = """\
+@material("oak") @thickness(18mm)
+assembly table {
+    @quantity(4) solid leg { bar = rectangle(center: origin, width: 50, height: 400) }
+    solid top { bar = rectangle(center: (0, 210), width: 500, height: 20) }
+}
+"""
+
+
+def test_all_pieces_of_a_part_weigh() -> None:
+    whole, leg = (aidl_lang.compile(LEGS).measure(*path) for path in ([], ["leg"]))
+    assert (whole.mass, leg.mass, leg.quantity) == (pytest.approx(1166.4), pytest.approx(259.2), 4)
+
+
 @pytest.mark.usefixtures("at_once")
 def test_a_variant_weighs_with_all_its_pieces() -> None:
     one = '@quantity(3) @material("oak") @thickness(10mm) solid s { param w = 20 in 10..30; '

@@ -11,7 +11,6 @@ import ezdxf
 import pytest
 
 from tests.commands import Aidl, Result
-from tests.compiled import KEPT
 from tests.export.readers import svg_paths
 
 BOX = """\
@@ -74,7 +73,6 @@ def test_names_are_written_if_asked(aidl: Aidl, box: Path) -> None:
 
 def test_same_program_same_sheets(aidl: Aidl, box: Path) -> None:
     for name in ("a", "b"):
-        KEPT.clear()
         aidl("compile", "box.aidl", "-o", f"{name}.svg", "-o", f"{name}.dxf", "--sheet", "20x20cm")
     for name in ("a.svg", "a-2.svg", "a.dxf", "a-2.dxf"):
         assert (box / name).read_bytes() == (box / name.replace("a", "b")).read_bytes()

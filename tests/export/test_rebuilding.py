@@ -545,7 +545,7 @@ def check(path: Path | None, text: str) -> None:
     assert not wrong, "\n".join(wrong)
 
 
-QUICK = {"fence_bracket", "flange", "key_rack", "linkage"}
+QUICK = {"fence_bracket", "flange", "key_rack", "linkage", "pi_case"}
 FILES = [
     pytest.param(path, id=path.stem, marks=[] if path.stem in QUICK else [pytest.mark.slow])
     for path in sorted((ROOT / "examples").rglob("*.aidl"))
