@@ -167,8 +167,9 @@ def test_themes(pane: Pane) -> None:
 
 
 def boxes(pane: Pane, *parts: str) -> list[dict[str, float]]:
-    """Where parts are once the first of them is scrolled into sight."""
-    script = """parts => {
+    """Where parts are once all is laid out, and the first of them scrolled into sight."""
+    script = """async parts => {
+        await new Promise(laid => requestAnimationFrame(() => requestAnimationFrame(laid)));
         document.querySelector(parts[0]).scrollIntoView({ block: "nearest", inline: "nearest" });
         return parts.map(part => document.querySelector(part).getBoundingClientRect().toJSON());
     }"""
