@@ -11,10 +11,14 @@ from server.tests.preview.talking import TEXT
 
 BROWSERS = "chromium-headless-shell", "chromium", "chromium-browser", "google-chrome"
 CHROMIUM = next(filter(None, map(shutil.which, BROWSERS)), None)
-ARGUMENTS = (
-    *("--no-sandbox", "--no-zygote", "--no-first-run", "--disable-sync", "--disable-component-update"),
-    *("--disable-background-networking", "--disable-gpu", "--disable-gpu-compositing", "--in-process-gpu"),
-)
+ARGUMENTS = [
+    "--no-sandbox",
+    "--disable-gpu",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+    "--no-first-run",
+]
 
 
 def browsing() -> Iterator[Browser]:
