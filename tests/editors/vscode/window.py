@@ -15,7 +15,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from playwright.sync_api import FrameLocator, Locator, Page, expect
+from playwright.sync_api import FrameLocator, Locator, Page, TimeoutError, expect
 
 from tests.editors.vscode.install import Installed
 
@@ -136,9 +136,13 @@ class Window:
         self.field.wait_for(state="hidden", timeout=PATIENCE)
 
     def run(self, command: str) -> None:
-        """Take a command from the palette, by its full title."""
+        """Take a command from the palette, which is opened again if something took its focus."""
         self.page.keyboard.press("F1")
-        self.field.fill(f">{command}")
+        try:
+            self.field.fill(f">{command}", timeout=PATIENCE / 3)
+        except TimeoutError:
+            self.page.keyboard.press("F1")
+            self.field.fill(f">{command}")
         named = f"[aria-label='{command}'], [aria-label^='{command},']"
         self.page.locator(".quick-input-list .monaco-list-row").and_(self.page.locator(named)).click(
             timeout=PATIENCE
