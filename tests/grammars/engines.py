@@ -2,14 +2,10 @@
 
 from __future__ import annotations
 
-import json
-from base64 import b64decode
 from functools import cache
-from importlib.util import find_spec
 from pathlib import Path
 
 import llguidance
-from tiktoken import Encoding
 
 from aidl_lang.common.source import SourceFile
 from aidl_lang.parser import parse
@@ -21,24 +17,26 @@ class Vocabulary:
     """The tokens of Mistral's tokenizer, its special ones left out."""
 
     def __init__(self) -> None:
-        spec = find_spec("mistral_common")  # which takes a second to import
-        assert spec is not None
-        assert spec.origin is not None
-        tekken = json.loads((Path(spec.origin).parent / "data" / "tekken_240911.json").read_bytes())
-        known = tekken["config"]
-        words = tekken["vocab"][: known["default_vocab_size"] - known["default_num_special_tokens"]]
-        self.tokens = [b64decode(word["token_bytes"]) for word in words]
-        ranks = {token: rank for rank, token in enumerate(self.tokens)}
-        self._encoding = Encoding(
-            "tekken", pat_str=known["pattern"], mergeable_ranks=ranks, special_tokens={}
+        import mistral_common
+        from mistral_common.tokens.tokenizers.base import SpecialTokenPolicy
+        from mistral_common.tokens.tokenizers.tekken import Tekkenizer
+
+        tekken = Tekkenizer.from_file(
+            str(Path(mistral_common.__file__).parent / "data" / "tekken_240911.json")
         )
+        first = tekken.num_special_tokens
+        pieces = range(first, tekken.n_words)
+        self.tokens = [tekken.id_to_byte_piece(i, SpecialTokenPolicy.KEEP) for i in pieces]
         self.eos_token_id = len(self.tokens)
         self.bos_token_id = None
         self.tokens.append(b"<end>")
         self.special_token_ids = [self.eos_token_id]
+        self._first = first
+        self._tekken = tekken
 
     def __call__(self, text: bytes | str) -> list[int]:
-        return self._encoding.encode(text.decode() if isinstance(text, bytes) else text)
+        text = text.decode() if isinstance(text, bytes) else text
+        return [i - self._first for i in self._tekken.encode(text, bos=False, eos=False)]
 
     def text(self, tokens: list[int]) -> str:
         return b"".join(self.tokens[i] for i in tokens).decode()
