@@ -126,20 +126,21 @@ test-playground: $(READY) ## try the playground in Chromium; installs Pyodide in
 	$(BIN)/python web/tests/install.py build/pyodide
 	AIDL_PYODIDE=build/pyodide $(BIN)/python -m pytest -n 0 web/tests
 
-lock: $(READY) ## renew requirements-dev.lock
-	$(BIN)/python -m pip install --quiet pip-tools
-	CUSTOM_COMPILE_COMMAND="make lock" $(BIN)/pip-compile --quiet --upgrade --extra dev --extra nest --extra step --extra 3mf --extra models --extra mcp --extra cluster --extra parquet --generate-hashes --allow-unsafe --strip-extras \
-		--no-emit-find-links --no-emit-index-url --output-file requirements-dev.lock pyproject.toml
-	$(BIN)/python -c "import tomllib; print(*tomllib.load(open('pyproject.toml', 'rb'))['dependency-groups']['site'])" \
-		| CUSTOM_COMPILE_COMMAND="make lock" $(BIN)/pip-compile --quiet --upgrade --generate-hashes --allow-unsafe --strip-extras \
-			--no-emit-find-links --no-emit-index-url --output-file requirements-site.lock -
+lock: $(READY) ## renew requirements-dev.lock and requirements-site.lock
+	$(LOCK) $(patsubst %,--extra %,dev nest step 3mf models mcp cluster parquet) --output-file requirements-dev.lock pyproject.toml
+	$(LOCK) --group site --output-file requirements-site.lock
 
 clean: ## remove what was built; the virtualenv stays
 	rm -rf build dist .mypy_cache .pytest_cache .ruff_cache .import_linter_cache .hypothesis
 
-$(SITE)/.ready: requirements-site.lock
+# pip installs uv, with the hash that the lock has for it, and uv the rest, in a fifth of the time.
+UV   = $(BIN)/uv --quiet --no-progress --system-certs
+INTO = $(UV) pip install --python
+LOCK = $(UV) pip compile --python-version 3.11 --upgrade --generate-hashes --strip-extras --custom-compile-command "make lock"
+
+$(SITE)/.ready: requirements-site.lock $(READY)
 	@$(PYTHON) -m venv $(SITE)
-	@$(SITE)/bin/python -m pip install --quiet --disable-pip-version-check --no-compile --require-hashes -r requirements-site.lock
+	@$(INTO) $(SITE)/bin/python --require-hashes -r requirements-site.lock
 	@touch $@
 
 # Done again only when the lock or the project file is newer than the last time.
@@ -147,6 +148,7 @@ $(READY): requirements-dev.lock pyproject.toml server/pyproject.toml eval/pyproj
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "AIDL needs Python 3.11 or newer")'
 	@echo "Setting up $(VENV) …"
 	@test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
-	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-compile --require-hashes -r requirements-dev.lock
-	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation --editable . --editable server --editable eval --editable dev --editable web
+	@sed -n '/^uv==/,/# via/p' requirements-dev.lock | $(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes -r /dev/stdin
+	@$(INTO) $(BIN)/python --require-hashes -r requirements-dev.lock
+	@$(INTO) $(BIN)/python --no-deps --no-build-isolation $(patsubst %,--editable %,. server eval dev web)
 	@touch $@
