@@ -3,6 +3,8 @@
 import gc
 import os
 
+import pytest
+
 # Tests run in as many processes as there are cores: threads of their own would be in each other's way.
 # NumPy asks when it is loaded.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
@@ -13,6 +15,12 @@ from tests.amount import pytest_collection_modifyitems as pytest_collection_modi
 
 # What a message says hangs on the program here, and not on how busy the machine is.
 trials.SECONDS, trials.LONGEST = 10.0, 20.0
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_auto_num_workers() -> int:
+    """One more than there are cores: some tests wait for a browser, a server or a clock."""
+    return (os.cpu_count() or 1) + 1
 
 
 def pytest_collection_finish() -> None:

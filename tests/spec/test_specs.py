@@ -14,12 +14,13 @@ from tests.spec.running import Outcome, run
 HERE = Path(__file__).parent
 SPECS = sorted(path for path in HERE.glob("*.md") if path.name not in ("README.md", "tolerance.md"))
 CASES = [case for path in SPECS for case in read(path)]
+_AT = {case.place: case for case in CASES}
 _ACCEPT = os.environ.get("AIDL_ACCEPT") == "1"
 
 
 @cache
 def outcome_of(place: str) -> Outcome:
-    return run(next(case for case in CASES if case.place == place))
+    return run(_AT[place])
 
 
 def _parameter(case: Case) -> object:
