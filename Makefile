@@ -115,9 +115,7 @@ accept: $(READY) ## take the present results as the new goldens, the README's pi
 
 examples: $(READY) ## draw every example into build/examples, those of the gallery among them
 	@mkdir -p build/examples/gallery
-	@for file in examples/*.aidl examples/gallery/*.aidl; do \
-		$(BIN)/aidl compile $$file -o build/$${file%.aidl}.svg || exit 1; \
-	done
+	@$(BIN)/python -c "import sys; from aidl_lang.tools.cli import main; sys.exit(any(main(['compile', file, '-o', 'build/' + file[:-4] + 'svg']) for file in sys.argv[1:]))" examples/*.aidl examples/gallery/*.aidl
 
 site-playground: $(READY) ## build the playground into build/site/playground, with Pyodide from its CDN or from the folder PYODIDE
 	$(BIN)/python -m aidl_web build/site/playground $(if $(PYODIDE),--pyodide $(PYODIDE))

@@ -3,8 +3,7 @@
 
     .venv/bin/python .ci/ceilings.py [--set]
 
-`--set` lowers ceilings to what there is today and raises none. Who must raise one does so by hand
-and says why.
+`--set` lowers ceilings to what there is today and raises none: they only fall.
 """
 
 from __future__ import annotations

@@ -14,6 +14,7 @@ from aidl_lang.common.diagnostics import TooLongError
 from aidl_lang.common.running import OutOfTime
 from aidl_lang.common.source import SourceFile
 from aidl_lang.common.world import MemoryWorld
+from aidl_lang.export import FORMATS
 from aidl_lang.export.job import ExportError
 from aidl_lang.pipeline import Compiled
 from aidl_lang.tools.agents.calling import answer
@@ -111,7 +112,7 @@ def test_measuring_and_comparing(doing: str, work: Callable[[Compiled], object])
 
 
 @pytest.mark.usefixtures("hurried")
-@pytest.mark.parametrize("suffix", [".svg", ".pdf", ".json", ".dxf", ".png", ".stl", ".3mf", ".step"])
+@pytest.mark.parametrize("suffix", FORMATS)
 def test_writing(suffix: str) -> None:
     made = pipeline.compile(SourceFile("plates.aidl", f"@thickness(3mm)\n{PLATES}"))
     with pytest.raises(ExportError) as refused:

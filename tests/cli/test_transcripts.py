@@ -16,6 +16,7 @@ from tests.documents import Block, blocks
 from tests.llm.conftest import _nothing_in_the_environment as _nothing_in_the_environment
 
 HERE = Path(__file__).parent
+_ACCEPT = bool(os.environ.get("AIDL_ACCEPT"))  # the tests themselves have nothing in the environment
 
 
 @pytest.fixture(autouse=True)
@@ -50,7 +51,7 @@ def shown(command: str, result: Result, usual: int) -> str:
 
 
 def compare(block: Block, transcript: str) -> None:
-    if os.environ.get("AIDL_ACCEPT"):
+    if _ACCEPT:
         page = block.path.read_text("utf-8")
         block.path.write_text(page.replace(block.text, transcript), "utf-8")
     else:

@@ -468,6 +468,7 @@ def test_it_is_in_the_file_or_told(said: str, name: str) -> None:
     is_there = saying(said, name).data != saying("", name).data
     if said in DEPTHS:
         assert is_there
-        assert ("N0756" in told) == (name.endswith(".dxf") or name.startswith("cutter"))
+        wanted = FORMATS[f".{name.rpartition('.')[2]}"]
+        assert ("N0756" in told) == (name.startswith("cutter") or (wanted.cuts and not wanted.tiles))
     else:
         assert is_there or "N0741" in told

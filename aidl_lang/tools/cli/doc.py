@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 _PLAIN = {
     "compile": "export save convert output file",
-    "--output": "export save format svg pdf png dxf step stl stp 3mf json csv",
+    "--output": "export save format",
     "--kerf": "laser burn width beam",
     "--nest": "pack arrange layout",
     "--sheet": "plywood material layout",
@@ -38,12 +38,14 @@ _PLAIN = {
 
 def commands_about(query: str) -> list[tuple[str, str]]:
     """Returns the verbs and options with every word of a query, each with its line; those named so first."""
+    from aidl_lang import export
     from aidl_lang.tools.reference.collect import stems
 
     wanted = set(stems(query))
+    plain = {**_PLAIN, "--output": f"{_PLAIN['--output']} {' '.join(export.FORMATS)}"}
     found = []
     for name, usage, line in _all():
-        named = set(stems(f"{name} {_PLAIN.get(name, '')}"))
+        named = set(stems(f"{name} {plain.get(name, '')}"))
         if wanted and wanted <= named | set(stems(line)):
             found.append((not wanted <= set(stems(name)), not wanted <= named, usage, line))
     return [(usage, line) for *_, usage, line in sorted(found, key=lambda each: each[:2])]
@@ -61,10 +63,6 @@ def _all() -> Iterator[tuple[str, str, str]]:
             if name and action.help and name not in seen:
                 seen.add(name)
                 yield name, f"aidl {verb} {name}", " ".join(action.help.split())
-
-
-_FEW = 3
-"""Names that a message lists."""
 
 
 def register_doc(parser: argparse.ArgumentParser) -> None:
@@ -97,7 +95,7 @@ def run_doc(arguments: argparse.Namespace) -> int:
         found, commands = _found(known, words)
     if isinstance(found, list):
         if arguments.picture:
-            names = ticked([e.name for e in found[:_FEW]] or [usage for usage, _ in commands])
+            names = ticked([e.name for e in found[:3]] or [usage for usage, _ in commands])
             raise UseError("E0912", f"`{words}` is no name; `--picture` draws one of these: {listed(names)}")
         if arguments.json:
             of_command = [{"name": usage, "sort": "command", "line": line} for usage, line in commands]
