@@ -67,6 +67,8 @@ def _stale() -> Iterator[str]:
 def _untried() -> Iterator[str]:
     for name in sorted(corpus.unused()):
         yield f"`{name}` is in no program of `tests/checker/corpus`: use it in one"
+    for name in sorted(corpus.unjudged()):
+        yield f"`{name}` has no line in `tests/checker/relations.py`, which judges it from outside"
     for call in shapes.unmeasured():
         yield f"`{call}` has no area and perimeter in `tests/property/shapes.md`"
 

@@ -19,6 +19,7 @@ from aidl_lang.syntax import ast
 from tests import compiled
 from tests.checker.checking import TOLERANCE, Finding, check
 from tests.checker.model import fold
+from tests.checker.relations import RELATIONS
 
 CORPUS = sorted((Path(__file__).parent / "corpus").glob("*.aidl"))
 _CHANGES = re.compile(r"^// changes: *(.*)$", re.MULTILINE)
@@ -123,6 +124,11 @@ def unused() -> set[str]:
     measures = _public(ast.FunctionDefinition, "measures.aidl", "clearance.aidl", "placement.aidl")
     assert {"gap", "clearance", "between"} <= measures
     return (_public(ast.ConstraintDefinition) - _called(items)) | (measures - _called(nodes))
+
+
+def unjudged() -> set[str]:
+    """Returns the public constraints that the outside check does not know."""
+    return {name for name in _public(ast.ConstraintDefinition) if fold(name) not in RELATIONS}
 
 
 def _ends(path: Path) -> list[dict[str, float]]:

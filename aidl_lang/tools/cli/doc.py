@@ -89,10 +89,7 @@ def run_doc(arguments: argparse.Namespace) -> int:
     if not words and arguments.picture:
         raise UseError("E0912", "`--picture` draws the example of one name", "`aidl doc` lists all names")
     style = TerminalStyle(wants_colour(sys.stdout, os.environ))
-    commands: list[tuple[str, str]] = []
-    found: Entry | list[Entry] = list(known.entries.values())
-    if words:
-        found, commands = _found(known, words)
+    found, commands = _found(known, words)
     if isinstance(found, list):
         if arguments.picture:
             names = ticked([e.name for e in found[:3]] or [usage for usage, _ in commands])
@@ -109,10 +106,15 @@ def run_doc(arguments: argparse.Namespace) -> int:
                     print()
                     _list(lines, style)
         else:
-            _list_all(known, style)
+            for number, topic in enumerate(known.topics):
+                print(("\n" if number else "") + style.strong(topic.title))
+                _list([(entry.name, entry.doc.line) for entry in known.of_topic(topic.name)], style)
     elif arguments.picture:
+        from aidl_lang.export import suffix_of
         from aidl_lang.tools.reference import picture
 
+        usual = "svg" if arguments.picture == files.STANDARD else None
+        suffix_of(arguments.picture, usual, (".svg",), "an example is drawn as SVG, not as `{}`")
         files.require_directory(arguments.picture)
         files.write(arguments.picture, picture(found))
         if arguments.picture != files.STANDARD:
@@ -127,8 +129,10 @@ def run_doc(arguments: argparse.Namespace) -> int:
 
 def _found(known: Reference, words: str) -> tuple[Entry | list[Entry], list[tuple[str, str]]]:
     """Returns the entry of a name, else all that speak of the words, and verbs and options with their lines
-    that do, else, with a note, the one misspelt.
+    that do, else, with a note, the one misspelt; without words all entries.
     """
+    if not words:
+        return list(known.entries.values()), []
     if (entry := known.find(words)) is not None:
         return entry, []
     from aidl_lang.common.render import escape
@@ -142,12 +146,6 @@ def _found(known: Reference, words: str) -> tuple[Entry | list[Entry], list[tupl
         return entry, []
     hints = did_you_mean(known.near(words))
     raise UseError("E0912", f"there is no `{words}` to tell about", *hints, "`aidl doc` lists all names")
-
-
-def _list_all(known: Reference, style: TerminalStyle) -> None:
-    for number, topic in enumerate(known.topics):
-        print(("\n" if number else "") + style.strong(topic.title))
-        _list([(entry.name, entry.doc.line) for entry in known.of_topic(topic.name)], style)
 
 
 def _list(lines: Sequence[tuple[str, str]], style: TerminalStyle) -> None:
