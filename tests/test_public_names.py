@@ -66,7 +66,7 @@ def _stale() -> Iterator[str]:
 
 def _untried() -> Iterator[str]:
     for name in sorted(corpus.unused()):
-        yield f"`{name}` is in no program of `tests/checker/corpus`: use it in one"
+        yield f"`{name}` is stated neither in its example nor in `tests/checker/corpus`: both are judged"
     for name in sorted(corpus.unjudged()):
         yield f"`{name}` has no line in `tests/checker/relations.py`, which judges it from outside"
     for call in shapes.unmeasured():

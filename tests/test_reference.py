@@ -1,4 +1,5 @@
-"""The reference: every example runs and is drawn as committed, and what is read off definitions is right.
+"""The reference: every example runs, is drawn as committed and states what holds; what is read off
+definitions is right.
 
 What a new name needs besides, and what is generated, is told by `test_public_names`.
 """
@@ -12,7 +13,6 @@ import pytest
 from aidl_dev.reference.guide import template
 from aidl_dev.reference.pages import image
 from aidl_dev.reference.site import texts
-from aidl_lang import pipeline
 from aidl_lang.checking import builtins, library
 from aidl_lang.common.diagnostics import Severity
 from aidl_lang.common.render import render
@@ -23,7 +23,9 @@ from aidl_lang.syntax.tables import KINDS, load_tables
 from aidl_lang.tools.reference import full_guide, guide
 from aidl_lang.tools.reference.collect import Entry, reference
 from aidl_lang.tools.reference.signatures import split_items
-from tests.compiled import EXAMPLES
+from tests.checker.checking import check
+from tests.compiled import EXAMPLES, json_of
+from tests.compiled import compiled as compiled_of
 from tests.documents import ROOT
 
 ENTRIES = list(reference().entries.values())
@@ -37,13 +39,17 @@ NOT_WORDS = frozenset({"comprehension"})
 
 @pytest.mark.parametrize("entry", [pytest.param(e, id=e.name) for e in ENTRIES if e.doc.example])
 def test_example_runs_and_is_drawn_as_committed(entry: Entry) -> None:
-    compiled = pipeline.compile(SourceFile(f"{entry.name}.aidl", entry.doc.example))
+    compiled = compiled_of(entry.doc.example)
     found = [d for d in compiled.diagnostics if d.severity is not Severity.NOTE]
     assert compiled.ok, f"{entry.where}: {compiled.status}\n" + "\n".join(map(render, found))
     assert not found, f"{entry.where}\n" + "\n".join(map(render, found))
     committed = ROOT / "docs" / "reference" / image(entry)
     assert committed.is_file(), "run `make reference`"
     assert compiled.export(".svg") == committed.read_bytes(), "run `make reference`"
+    if entry.sort in ("constraint", "relation"):
+        judged = check(entry.doc.example, json_of(entry.doc.example))
+        assert any(f.kind == "constraint" for f in judged)
+        assert [str(f) for f in judged if not f.holds] == [], f"{entry.where}, judged from outside"
 
 
 def test_examples_use_what_they_are_about() -> None:

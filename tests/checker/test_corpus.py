@@ -16,6 +16,7 @@ from aidl_lang.checking import library
 from aidl_lang.common.source import SourceFile
 from aidl_lang.parser import parse
 from aidl_lang.syntax import ast
+from aidl_lang.tools.reference.collect import reference
 from tests import compiled
 from tests.checker.checking import TOLERANCE, Finding, check
 from tests.checker.model import fold
@@ -109,16 +110,14 @@ def _called(nodes: Iterable[ast.Node]) -> set[str]:
     return names | {other[fold(name)] for name in names if fold(name) in other}
 
 
-def _corpus() -> list[ast.Node]:
-    modules = [parse(SourceFile(p.name, p.read_text("utf-8"))).module for p in CORPUS]
-    return [node for module in modules for node in ast.walk(module)]
-
-
 def unused() -> set[str]:
-    """Returns the public constraints that no program of the corpus states, and the measures and places that
-    none names.
+    """Returns the public constraints that no program of the corpus states, nor the example of any in the
+    library, and the measures and places that none names: all these programs are judged from outside.
     """
-    nodes = _corpus()
+    entries = reference().entries.values()
+    texts = [p.read_text("utf-8") for p in CORPUS]
+    texts += [e.doc.example for e in entries if e.sort in ("constraint", "relation")]
+    nodes = [node for text in texts for node in ast.walk(parse(SourceFile("<text>", text)).module)]
     blocks = [node.items for node in nodes if isinstance(node, ast.Constrain)]
     items = [n.value for b in blocks for n in ast.walk(b) if isinstance(n, ast.ExpressionStatement)]
     measures = _public(ast.FunctionDefinition, "measures.aidl", "clearance.aidl", "placement.aidl")
