@@ -5,7 +5,7 @@ import os
 
 import pytest
 
-# Tests run in as many processes as there are cores: threads of their own would be in each other's way.
+# Tests run in more processes than there are cores: threads of their own would be in each other's way.
 # NumPy asks when it is loaded.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
