@@ -93,7 +93,9 @@ class Installation:
         self._install((*UV, "pip", "install", "--python", self.bin / "python"), packages)
 
     def _install(self, command: Sequence[str | Path], packages: Sequence[str | Path]) -> None:
-        """What packages need is compiled as it is used: all of it would take minutes."""
+        """Installs packages and compiles AIDL; what they need is compiled as it is used: all of it would
+        take minutes.
+        """
         with self._timed(" ".join(Path(part).name for part in (command[0], *packages))):
             subprocess.run([*command, *packages], check=True)
         subprocess.run([self.bin / "python", "-m", "compileall", "-q", self.package], check=True)
@@ -208,10 +210,9 @@ def clean_copy(folder: Path) -> Path:
 
 
 def build(package: Path, into: Path, kind: str = "--wheel") -> Path:
-    """Returns the archive that is built from a package's folder."""
-    before = set(into.glob("aidl*"))
+    """Returns the archive that is built from a package's folder, into a folder of its own."""
     subprocess.run([*UV, "build", kind, package, "--out-dir", into], check=True)
-    (archive,) = set(into.glob("aidl*")) - before
+    (archive,) = into.glob("aidl*")
     return archive
 
 
@@ -467,7 +468,7 @@ def installed_and_run(folder: Path) -> Installation:
     here.expect(not builders, f"what only a build needs is installed: {builders}")
     here.expect(state(here.package) == before, "a run writes into the installation")
 
-    archive, server = build(copy, folder / "dist", "--sdist"), build(copy / "server", folder / "dist")
+    archive, server = build(copy, folder / "dist", "--sdist"), build(copy / "server", folder / "server")
     here.uv("--reinstall-package", "aidl-lang", server, f"{archive}[{','.join(EXTRAS)}]")
     rebuilt = state(here.package)
     missing = sorted(before.keys() - rebuilt.keys())

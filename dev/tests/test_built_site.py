@@ -99,7 +99,7 @@ def test_what_people_ask_for_is_found(browser: Browser, address: str) -> None:
     missed = {}
     for words, wanted in ASKED.items():
         page.keyboard.press("Control+a")
-        page.keyboard.insert_text(words)  # one search, and not one for each letter
+        page.keyboard.type(words)
         try:
             page.wait_for_function(
                 "wanted => [...document.querySelectorAll('div')].flatMap(d => d.shadowRoot"

@@ -69,7 +69,7 @@ class Expectation:
         return [line for line in self.lines if line.text and not line.text.startswith(settings)]
 
 
-@dataclass
+@dataclass(eq=False)
 class Case:
     """A program with everything that follows it up to the next one."""
 

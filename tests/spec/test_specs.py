@@ -14,13 +14,12 @@ from tests.spec.running import Outcome, run
 HERE = Path(__file__).parent
 SPECS = sorted(path for path in HERE.glob("*.md") if path.name not in ("README.md", "tolerance.md"))
 CASES = [case for path in SPECS for case in read(path)]
-_AT = {case.place: case for case in CASES}
 _ACCEPT = os.environ.get("AIDL_ACCEPT") == "1"
 
 
 @cache
-def outcome_of(place: str) -> Outcome:
-    return run(_AT[place])
+def outcome_of(case: Case) -> Outcome:
+    return run(case)
 
 
 def _parameter(case: Case) -> object:
@@ -31,7 +30,7 @@ def _parameter(case: Case) -> object:
 
 @pytest.mark.parametrize("case", [_parameter(case) for case in CASES])
 def test_spec(case: Case) -> None:
-    outcome = outcome_of(case.place)
+    outcome = outcome_of(case)
     if outcome.problems and not (_ACCEPT and not case.pending):
         where = case.path.relative_to(HERE.parent.parent)
         pytest.fail("\n".join(f"{where}:{p.line}: {p.text}" for p in outcome.problems), pytrace=False)
@@ -46,7 +45,7 @@ def test_accept(path: Path) -> None:
         place: text
         for case in CASES
         if case.path == path and not case.pending
-        for place, text in outcome_of(case.place).accepted.items()
+        for place, text in outcome_of(case).accepted.items()
     }
     for (start, end), text in sorted(edits.items(), reverse=True):
         lines[start - 1 : end - 1] = text

@@ -26,7 +26,6 @@ if TYPE_CHECKING:
 
 _PLAIN = {
     "compile": "export save convert output file",
-    "--output": "export save format",
     "--kerf": "laser burn width beam",
     "--nest": "pack arrange layout",
     "--sheet": "plywood material layout",
@@ -42,7 +41,7 @@ def commands_about(query: str) -> list[tuple[str, str]]:
     from aidl_lang.tools.reference.collect import stems
 
     wanted = set(stems(query))
-    plain = {**_PLAIN, "--output": f"{_PLAIN['--output']} {' '.join(export.FORMATS)}"}
+    plain = {**_PLAIN, "--output": f"export save format {' '.join(export.FORMATS)}"}
     found = []
     for name, usage, line in _all():
         named = set(stems(f"{name} {plain.get(name, '')}"))
